@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+/// A path as straight chords, as few as the tolerance allows.
+///
+/// A chord over a length l of curvature k strays from the path by k l^2 / 8. Nodes are laid at equal steps of
+/// N = integral of sqrt(k / (8 t r)) dl, with t the share of the tolerance that is the chords': a smooth
+/// function of the path, so neighbouring rays get neighbouring chords.
+#ifndef BLACKHOLE_CHORDS_H
+#define BLACKHOLE_CHORDS_H
+
+#include "blackhole/path.h"
+
+namespace blackhole {
+
+struct Chord {
+	Vec3 from, to;         ///< on the path
+	Vec3 tangent_from;     ///< the path's unit tangents there
+	Vec3 tangent_to;
+	double nearest;        ///< no point of the chord is nearer to the centre
+	double farthest;       ///< none is farther
+};
+
+/// Walks a solved path chord by chord. The path must outlive it and not change.
+class Chords {
+public:
+	/// ramp: starts with short chords, for a ray that leaves a surface and must not fall back through it.
+	Chords(const Path& path, double tolerance, bool ramp);
+	/// The next chord; false after the last. Chords of a ray that starts inside the horizon begin where it emerges.
+	bool next(Chord& chord);
+	/// Whether next() was called as often as there are chords.
+	bool done() const { return ended_; }
+
+private:
+	double density(std::size_t node) const;
+	void advance(double target);
+
+	const Path& path_;
+	double scale_;
+	std::size_t i_ = 0;      // the piece
+	double t_ = 0;           // where on it
+	double n_ = 0;           // N so far
+	double piece_n_ = 0;     // N at the start of the piece
+	double d0_ = 0, d1_ = 0; // density at its ends
+	double length_ = 0;      // its length
+	int count_ = 0;
+	bool ramp_, ended_ = false;
+	Vec3 point_, tangent_;
+	void load(std::size_t i);
+};
+
+}
+
+#endif

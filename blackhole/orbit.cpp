@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "blackhole/orbit.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace blackhole {
+namespace {
+
+using Quad = __float128;
+
+template <typename T>
+struct Products {
+	T r2, d2, s, h2; // |x|^2, |d|^2, x.d, |x cross d|^2
+	Products(const Vec3& x, const Vec3& d) {
+		const T a = x.x, b = x.y, c = x.z, e = d.x, f = d.y, g = d.z;
+		const T i = b * g - c * f, j = c * e - a * g, k = a * f - b * e;
+		r2 = a * a + b * b + c * c;
+		d2 = e * e + f * f + g * g;
+		s = a * e + b * f + c * g;
+		h2 = i * i + j * j + k * k;
+	}
+};
+
+// Newton from the double's root doubles its digits: two rounds are enough for quad.
+Quad root(Quad a) {
+	if (!(a > 0))
+		return 0;
+	Quad y = std::sqrt(static_cast<double>(a));
+	for (int i = 0; i < 3; i++)
+		y = (y + a / y) / 2;
+	return y;
+}
+double root(double a) { return std::sqrt(a); }
+
+// Beyond 3 Rs comparing b with its critical value is well conditioned: escape iff outward or b > b_c,
+// with b^2 = h^2 / (d^2 - h^2 / r^3). Nearer, the square of the escape rule is compared, signs apart.
+// Returns a number > 0 for escape; sets scale to the size of what was subtracted.
+template <typename T>
+T margin(const Vec3& x, const Vec3& d, T& scale) {
+	const Products<T> p(x, d);
+	const T r = root(p.r2), r3 = p.r2 * r;
+	if (r >= 3) {
+		if (p.s >= 0) {
+			scale = 0;
+			return 1;
+		}
+		const T limit = T(27) / 4 * p.d2;
+		const T have = p.h2 * (1 + T(27) / (4 * r3));
+		// The cross product of nearly parallel vectors keeps an error of size |x|^2 |d|^2.
+		scale = limit + p.r2 * p.d2 * std::min<T>(1, root(p.h2 / (p.r2 * p.d2)) + T(std::numeric_limits<double>::epsilon()));
+		return have - limit;
+	}
+	const T left = p.s * (p.s < 0 ? -p.s : p.s) * (r3 + T(27) / 4);
+	const T k = T(3) / 2 - r;
+	const T right = k * (k < 0 ? -k : k) * (r + 3) * p.r2 * p.d2;
+	scale = p.r2 * p.d2 * (r3 + T(27) / 4);
+	return left - right;
+}
+
+}
+
+Outcome classify(const Vec3& x, const Vec3& d) {
+	// Lengths near the ends of the exponent's range would overflow when squared four times.
+	const double m = std::max({std::fabs(d.x), std::fabs(d.y), std::fabs(d.z)});
+	const Vec3 u = (m > 1e30 || m < 1e-30) ? (1 / m) * d : d;
+	double scale;
+	const double quick = margin<double>(x, u, scale);
+	if (std::fabs(quick) > 1e-13 * scale)
+		return quick > 0 ? Outcome::escaped : Outcome::captured;
+	Quad quad_scale;
+	return margin<Quad>(x, u, quad_scale) > 0 ? Outcome::escaped : Outcome::captured;
+}
+
+Orbit::Orbit(const Vec3& x, const Vec3& d) {
+	r = length(x);
+	e1 = (1 / r) * x;
+	const Vec3 n = unit(d);
+	const double radial = dot(n, e1);
+	Vec3 across = n - radial * e1;
+	// Once more, so that e2 is perpendicular to the last digit for nearly radial rays too.
+	across = across - dot(across, e1) * e1;
+	double tangential = length(across);
+	if (tangential > 1e-300) {
+		e2 = (1 / tangential) * across;
+	} else {
+		// A radial ray stays on its line, in whatever plane.
+		const Vec3 other = std::fabs(e1.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+		e2 = unit(other - dot(other, e1) * e1);
+		tangential = 0;
+	}
+	const double hu = r * tangential;
+	const double speed = 1 / std::sqrt(1 - tangential * tangential / r); // = 1 / sqrt(1 - hu^2 / r^3)
+	p = {r, 0};
+	v = {speed * radial, speed * tangential};
+	h = speed * hu;
+}
+
+}

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+/// One ray's way inside the effect sphere, from where it starts to the sphere's surface or to the horizon.
+#ifndef BLACKHOLE_PATH_H
+#define BLACKHOLE_PATH_H
+
+#include "blackhole/method.h"
+
+#include <vector>
+
+namespace blackhole {
+
+/// What decides how paths are computed; the same for all rays of a hole.
+struct Settings {
+	double effect_radius; ///< R in Rs, > 1.5
+	double tolerance;     ///< radians, [1e-9, 0.1]
+	Method method;
+};
+
+/// A solved path. Reusable: solve() again keeps the memory. Not thread-safe; one for each thread.
+class Path {
+public:
+	/// Traces a ray. x: position with |x| <= R (rounding beyond is harmless); d: coordinate direction, any length;
+	/// with |x| = R it points inward. Inside the horizon d points outward with positive energy.
+	/// The outcome is classify()'s. Returns false if no path of that outcome was found in the steps allowed:
+	/// then the path is what was found last, and the caller counts and names the failure.
+	bool solve(const Vec3& x, const Vec3& d, const Settings& settings);
+
+	Outcome outcome() const { return outcome_; }
+	/// Whether the ray started at or inside the horizon; then nothing can be hit before emerged().
+	bool started_inside() const { return inside_; }
+	/// The affine parameter at which it left the horizon; 0 if it did not start inside.
+	double emerged() const { return emerged_; }
+
+	/// Nodes in order; at least two. The last lies on the effect sphere (escaped) or on the horizon (captured).
+	const std::vector<Node>& nodes() const { return nodes_; }
+	const Orbit& orbit() const { return orbit_; }
+
+	/// Where the path ends and the unit tangent there.
+	Vec3 end() const { return orbit_.to_space(nodes_.back().p); }
+	Vec3 end_tangent() const { return unit(orbit_.to_space(nodes_.back().v)); }
+
+	/// Angle swept around the hole's centre, radians, >= 0.
+	double swept() const;
+	/// The largest relative change of energy and angular momentum between start and end: what the integrator did
+	/// wrong, no more than a hint of the path's own error.
+	double drift() const;
+	/// Whether the path had to be taken a hair to the side of b_c for the numbers to follow classify(); only
+	/// within 0.1 % of b_c.
+	bool nudged() const { return nudged_; }
+
+private:
+	bool trace(const Settings& settings);
+	bool finish(const Node& last, double radius, bool outward);
+
+	Orbit orbit_{{2, 0, 0}, {1, 0, 0}};
+	std::vector<Node> nodes_;
+	Outcome outcome_ = Outcome::escaped;
+	bool inside_ = false, nudged_ = false;
+	double emerged_ = 0;
+	int half_turns_ = 0;
+};
+
+}
+
+#endif

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+/// The state of one ray under way, between bentrays.cpp and localframe.cpp only.
+#ifndef POVRAY_BENTSEGMENT_H
+#define POVRAY_BENTSEGMENT_H
+
+#include <vector>
+
+#include "backend/render/ray.h"
+#include "blackhole/vec.h"
+
+namespace pov
+{
+
+struct Bent_Segment
+{
+	/// A chord that hit nothing, kept for fog and media.
+	struct Span
+	{
+		VECTOR from, direction;
+		DBL length;
+	};
+
+	Ray chord;               ///< the chord in hand
+	blackhole::Vec3 tangent; ///< the path's at the hit, coordinates
+	bool has_tangent;        ///< the hit is inside an effect sphere
+	bool captured;
+	bool volume;             ///< fog or media: spans are kept
+	bool moved;              ///< no longer on the ray's first chord
+	DBL budget;              ///< the farthest the ray may go
+	DBL travelled;           ///< length of the chords before the one in hand
+	std::vector<Span> spans;
+	size_t record;           ///< index in the recorder, if there is one
+	unsigned int chords;
+	DBL drift;
+	const char *end;
+};
+
+}
+
+#endif

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+/// All holes of a scene, what of the scene is in their reach, and what tracing around them amounted to.
+#ifndef POVRAY_BLACKHOLES_H
+#define POVRAY_BLACKHOLES_H
+
+#include <string>
+#include <vector>
+
+#include <boost/scoped_ptr.hpp>
+#include <boost/thread/mutex.hpp>
+
+#include "base/povms.h"
+#include "base/povmscpp.h"
+#include "backend/blackhole/blackhole.h"
+
+namespace pov
+{
+
+class MessageFactory;
+class Ray_Paths;
+class SceneData;
+
+/// One thread's counts, summed when the picture is done.
+struct Blackhole_Counts
+{
+	POV_ULONG Rays, Entered, Captured, Chords, Tested, Skipped, Nudged, Failed, Origins_Inside;
+	unsigned int Most_Chords;
+	DBL Most_Swept; ///< radians
+	DBL Drift;
+
+	Blackhole_Counts();
+	void Add(const Blackhole_Counts& other);
+};
+
+/// The radii, in Schwarzschild radii, at which something of the scene may be hit around one hole.
+class Shells
+{
+	public:
+		void Add(DBL from, DBL to);
+		void Merge();
+		bool Empty() const { return shells.empty(); }
+		bool Overlap(DBL nearest, DBL farthest) const;
+		const std::vector<std::pair<DBL, DBL> >& List() const { return shells; }
+	private:
+		std::vector<std::pair<DBL, DBL> > shells;
+};
+
+class Blackholes
+{
+	public:
+		explicit Blackholes(POVMS_Object& options);
+		~Blackholes();
+
+		/// Whether the scene's holes are wanted (`Blackhole=off` gives the hole-free twin).
+		bool Enabled() const { return enabled; }
+		/// Takes the hole over. It is checked by the parser before.
+		void Add(Blackhole *hole);
+		/// The first hole whose effect sphere overlaps, or NULL.
+		const Blackhole *Overlapping(const Blackhole& hole) const;
+		const std::vector<Blackhole *>& Holes() const { return holes; }
+		/// Whether rays need us at all: holes to bend them or paths to be written.
+		bool Active() const;
+
+		/// After parsing: finds what is within reach, says so, and warns of what straddles the horizon.
+		/// Returns the message's text.
+		std::string Prepare(const SceneData& scene, MessageFactory& messages);
+		const Shells& Shells_Of(size_t hole) const { return shells[hole]; }
+
+		/// The hole in whose effect sphere the point lies, or NULL.
+		const Blackhole *At(const VECTOR p) const;
+		/// The hole with a falling camera, or NULL.
+		const Blackhole *Falling() const { return falling; }
+
+		/// Counts of a thread that begins; owned here, valid as long as the scene.
+		Blackhole_Counts *New_Counts();
+		/// The statistics block's lines; empty without holes.
+		void Get_Statistics(POVMS_Object& stats);
+		/// At the end of a view: writes the ray paths, and warns of what went wrong, by name and number.
+		void Finish(MessageFactory& messages);
+
+		Ray_Paths *Paths() const { return paths.get(); }
+	private:
+		Blackhole_Counts Sum();
+
+		bool enabled;
+		std::vector<Blackhole *> holes;
+		std::vector<Shells> shells;
+		const Blackhole *falling;
+		boost::scoped_ptr<Ray_Paths> paths;
+		boost::mutex mutex;
+		std::vector<Blackhole_Counts *> counts;
+
+		Blackholes(const Blackholes&);
+		Blackholes& operator=(const Blackholes&);
+};
+
+}
+
+#endif

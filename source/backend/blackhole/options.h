@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+/// INI keys of ours and their attributes, shared by the front end that reads them and the back end that obeys.
+/// The codes are ours alone: POV-Ray's povmsgid.h has none of them.
+#ifndef POVRAY_BLACKHOLE_OPTIONS_H
+#define POVRAY_BLACKHOLE_OPTIONS_H
+
+enum
+{
+	kPOVAttrib_Blackhole           = 'BkHl', ///< bool: off renders the scene without its holes
+	kPOVAttrib_RayPaths            = 'RyPa', ///< file to write the traced chords to
+	kPOVAttrib_RayPathsGrid        = 'RyPG', ///< "32x24": rays across and down the picture
+	kPOVAttrib_BlackholeStatistics = 'BkSt'  ///< lines for the statistics block
+};
+
+#define BLACKHOLE_INI_KEYS \
+	{ "Blackhole",           kPOVAttrib_Blackhole,          kPOVMSType_Bool }, \
+	{ "Ray_Paths",           kPOVAttrib_RayPaths,           kPOVMSType_UCS2String }, \
+	{ "Ray_Paths_Grid",      kPOVAttrib_RayPathsGrid,       kPOVMSType_UCS2String },
+
+#endif
