@@ -2,10 +2,14 @@
 # Brings POV-Ray's source, with our hooks laid over it, to POVRAY_TREE at configure time; a changed
 # hook configures again. All presets share one tree, and with ccache one compilation of what is the same.
 set(POVRAY_TREE ${CMAKE_SOURCE_DIR}/build/upstream/tree)
+option(POVRAY_HOOKS "OFF: upstream as it is, by the same compiler and flags, to compare with" ON)
+if(NOT POVRAY_HOOKS)
+	set(POVRAY_TREE ${CMAKE_SOURCE_DIR}/build/upstream/pristine)
+endif()
 
-file(GLOB_RECURSE POVRAY_HOOKS CONFIGURE_DEPENDS
+file(GLOB_RECURSE hooks CONFIGURE_DEPENDS
 	${CMAKE_SOURCE_DIR}/source/*.patch ${CMAKE_SOURCE_DIR}/vfe/*.patch ${CMAKE_SOURCE_DIR}/unix/*.patch)
-set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${POVRAY_HOOKS} ${CMAKE_SOURCE_DIR}/tools/upstream)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${hooks} ${CMAKE_SOURCE_DIR}/tools/upstream)
 execute_process(COMMAND ${CMAKE_SOURCE_DIR}/tools/upstream prepare ${POVRAY_SOURCE} RESULT_VARIABLE failed)
 if(failed)
 	message(FATAL_ERROR "POV-Ray's source could not be prepared; the line above says why")
