@@ -166,6 +166,25 @@ TEST(Path, FromInsideTheHorizon) {
 	EXPECT_LT(length(cross(direction, path.end_tangent())), 1e-5);
 }
 
+// Falling observers look from there; rays of little energy are the hardest.
+TEST(Path, KeepsTheToleranceDeepInsideTheHorizon) {
+	for (double tolerance : {1e-2, 1e-4, 1e-6})
+		for (double r : {0.9, 0.5, 0.1, 0.01, 1e-3})
+			for (double part : {0.1, 0.5, 0.9, 0.99}) {
+				const double s = part * std::sqrt(r);
+				const Vec3 x{r, 0, 0}, d{std::sqrt(1 - s * s), s, 0};
+				Path path;
+				ASSERT_TRUE(path.solve(x, d, {1000, tolerance, Method::rk4}));
+				Vec3 direction, position;
+				double b;
+				const bool escapes = oracle::exit_direction(x, d, 1000, direction, position, &b);
+				ASSERT_EQ(escapes, path.outcome() == Outcome::escaped);
+				if (!escapes || std::fabs(b / critical_b - 1) < 1e-3)
+					continue;
+				EXPECT_LT(length(cross(direction, path.end_tangent())) / tolerance, 1) << "r " << r << ", b " << b << ", tolerance " << tolerance;
+			}
+}
+
 // What light does forward it does backward: the path from the exit, reversed, comes back.
 TEST(Path, IsReversible) {
 	for (double a : {0.12, 0.2, 0.6, 1.5}) {

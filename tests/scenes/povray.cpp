@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "povray.h"
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+
+namespace {
+
+// Removed at exit, so that a failing test's files can be looked at while it runs under a debugger.
+struct Folders {
+	std::vector<std::string> list;
+	~Folders() {
+		std::error_code ignored;
+		for (const std::string& f : list)
+			std::filesystem::remove_all(f, ignored);
+	}
+} folders;
+
+Picture read_ppm(const std::string& file) {
+	Picture p;
+	std::ifstream in(file, std::ios::binary);
+	std::string magic;
+	int most = 0;
+	// POV-Ray writes comments behind the magic number.
+	in >> magic >> std::ws;
+	while (in.peek() == '#') {
+		std::string comment;
+		std::getline(in, comment);
+		in >> std::ws;
+	}
+	if (!(in >> p.width >> p.height >> most) || magic != "P6" || most != 65535)
+		return Picture();
+	in.get();
+	const std::string data((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+	const std::size_t n = std::size_t(p.width) * std::size_t(p.height) * 3;
+	if (data.size() != 2 * n)
+		return Picture();
+	p.samples.resize(n);
+	for (std::size_t i = 0; i < n; i++)
+		p.samples[i] = std::uint16_t((std::uint8_t(data[2 * i]) << 8) | std::uint8_t(data[2 * i + 1]));
+	return p;
+}
+
+}
+
+std::string number(double value) {
+	char text[40];
+	std::snprintf(text, sizeof text, "%.17g", value);
+	return text;
+}
+
+Rendering povray(const std::string& scene, int width, int height, const std::string& words) {
+	Rendering run;
+	char name[] = "/tmp/blackhole-test-XXXXXX";
+	if (!mkdtemp(name))
+		std::abort();
+	run.folder = name;
+	folders.list.push_back(name);
+	std::ofstream(run.folder + "/scene.pov") << "#version 3.7; global_settings { assumed_gamma 1 }\n" << scene << "\n";
+	std::ostringstream command;
+	// HOME: the user's own povray.ini has no say in a test.
+	command << "cd " << name << " && HOME=" << name << " timeout 250 " << POVRAY << " +Iscene.pov +Oscene.ppm +FP16 File_Gamma=1 -D -A +WT1 +L"
+			<< INCLUDES << " +W" << width << " +H" << height << " " << words << " >out 2>&1";
+	const int status = std::system(command.str().c_str());
+	run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128;
+	std::ifstream out(run.folder + "/out");
+	run.text.assign(std::istreambuf_iterator<char>(out), std::istreambuf_iterator<char>());
+	// Less the banner, where there is more than that.
+	const std::size_t parsing = run.text.find("==== [Parsing");
+	if (parsing != std::string::npos)
+		run.text.erase(0, parsing);
+	run.picture = read_ppm(run.folder + "/scene.ppm");
+	return run;
+}
