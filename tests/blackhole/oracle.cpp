@@ -145,4 +145,47 @@ Vec3 point(const Vec3& x, const Vec3& d, double r, int leg) {
 	return start.at(r, ray.swept(r, leg));
 }
 
+bool first_hit(const Vec3& x, const Vec3& d, double R, const std::function<double(const Vec3&)>& f, Vec3& point, Vec3& tangent) {
+	const Start start(x, d);
+	const Ray ray(start.r, start.a);
+	const Real end = ray.turns() ? ray.turning_radius() : ray.escapes() ? Real(R) : Real(1);
+	// s in [0, 1]: to the turning point or the end; in [1, 2]: from the turning point on, evenly spaced in the square root of
+	// the distance from it, where the path is smooth.
+	auto radius = [&](Real s) -> Real {
+		if (!ray.turns())
+			return start.r * std::pow(end / start.r, s);
+		const Real last = ray.escapes() ? Real(R) : Real(1);
+		return s < 1 ? end + (start.r - end) * (1 - s) * (1 - s) : end + (last - end) * (s - 1) * (s - 1);
+	};
+	auto at = [&](Real s) { return start.at(radius(s), ray.swept(radius(s), s >= 1 ? 1 : 0)); };
+	const Real most = ray.turns() ? 2 : 1, step = 1.0L / 200;
+	const double first = f(at(step / 50));
+	for (Real s = step / 50; s < most; s += step) {
+		const Real next = std::min(s + step, most);
+		if ((f(at(next)) > 0) == (first > 0))
+			continue;
+		Real lo = s, hi = next;
+		for (int i = 0; i < 60; i++) {
+			const Real mid = (lo + hi) / 2;
+			((f(at(mid)) > 0) == (first > 0) ? lo : hi) = mid;
+		}
+		const int leg = lo >= 1 ? 1 : 0;
+		const Real r = radius(lo), phi = ray.swept(r, leg);
+		point = start.at(r, phi);
+		tangent = start.at(1, phi + ray.angle(r, leg));
+		return true;
+	}
+	return false;
+}
+
+double distance(const Vec3& x, const Vec3& d, const Vec3& q, int turns) {
+	const Start start(x, d);
+	const Ray ray(start.r, start.a);
+	double phi = std::atan2(dot(q, start.e2), dot(q, start.e1));
+	if (phi < 0)
+		phi += double(2 * pi);
+	const double off_plane = dot(q, cross(start.e1, start.e2));
+	return std::hypot(double(ray.distance(length(q), phi + double(2 * pi) * turns)), off_plane);
+}
+
 }

@@ -9,6 +9,8 @@
 
 #include "blackhole/vec.h"
 
+#include <functional>
+
 namespace oracle {
 
 using Real = long double;
@@ -46,6 +48,15 @@ bool exit_direction(const blackhole::Vec3& x, const blackhole::Vec3& d, double R
 
 /// The position on the ray at radius r on the leg (see swept), for objects centred on the hole.
 blackhole::Vec3 point(const blackhole::Vec3& x, const blackhole::Vec3& d, double r, int leg);
+
+/// Follows the exact path until f changes its sign (from its value a little after the start), up to radius R or the
+/// horizon. Returns false if it never does; otherwise the point and the path's unit tangent there.
+bool first_hit(const blackhole::Vec3& x, const blackhole::Vec3& d, double R, const std::function<double(const blackhole::Vec3&)>& f,
+	blackhole::Vec3& point, blackhole::Vec3& tangent);
+
+/// Distance of a point q from the exact path through x along d, to first order; q must be near the path.
+/// turns: how often q has been round the hole already (its angle is taken in [2 pi turns, 2 pi turns + 2 pi)).
+double distance(const blackhole::Vec3& x, const blackhole::Vec3& d, const blackhole::Vec3& q, int turns = 0);
 
 }
 

@@ -30,6 +30,13 @@ using blackhole::Vec3;
 static const DBL BACK_UP = 2.0 * MIN_ISECT_DEPTH;
 static const DBL JOINT = 0.9 * BACK_UP;
 
+// The least depth a hit on a chord may have: beyond the joint, and as far from the ray's own origin as POV-Ray wants it.
+// (Chords may be shorter than MIN_ISECT_DEPTH; the second then starts behind the surface the ray has just left.)
+static DBL Least_Depth(bool moved, DBL travelled)
+{
+	return moved ? max(JOINT, BACK_UP + MIN_ISECT_DEPTH - travelled) : 0.0;
+}
+
 // A ray may be passed from hole to hole; light that never leaves is as good as captured.
 static const int MOST_PASSAGES = 1000;
 
@@ -295,7 +302,7 @@ bool Bent_Path::Straight(const VECTOR from, const Vec3& direction, DBL length, I
 	Assign_Vec3(s.chord.Direction, direction);
 	VEvaluateRay(s.chord.Origin, from, -back, s.chord.Direction);
 	isect.Depth = length + back;
-	const Chord_Condition condition(post, s.moved ? JOINT : 0.0, NULL);
+	const Chord_Condition condition(post, Least_Depth(s.moved, s.travelled), NULL);
 	const bool found = bent->trace.FindIntersection(isect, s.chord, pre, condition);
 	Assign_Vector(s.chord.Origin, from);
 	isect.Depth = max(0.0, isect.Depth - back);
@@ -379,7 +386,7 @@ bool Bent_Path::Through(size_t index, VECTOR from, Vec3& direction, Intersection
 				const DBL back = s.moved ? BACK_UP : 0.0;
 				VEvaluateRay(s.chord.Origin, start, -back, s.chord.Direction);
 				isect.Depth += back;
-				const Chord_Condition condition(post, s.moved ? JOINT : 0.0, c.nearest <= 1.0 + 1e-9 || c.nearest * hole.Radius - hole.Radius < BACK_UP ? &hole : NULL);
+				const Chord_Condition condition(post, Least_Depth(s.moved, s.travelled), c.nearest <= 1.0 + 1e-9 || c.nearest * hole.Radius - hole.Radius < BACK_UP ? &hole : NULL);
 				found = bent->trace.FindIntersection(isect, s.chord, pre, condition);
 				Assign_Vector(s.chord.Origin, start);
 				isect.Depth = max(0.0, isect.Depth - back);

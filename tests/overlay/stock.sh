@@ -1,0 +1,90 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: AGPL-3.0-or-later
+# A scene without a hole must not change by a bit: renders Debian's sample scenes with Debian's povray and
+# with BINARY, and compares the pictures, 16 bits a channel.
+#   stock.sh BINARY         the spread of scenes in stock-scenes.txt
+#   stock.sh BINARY --all   every scene that Debian's povray renders within two minutes
+# Debian's pictures are kept in build/upstream/stock-pictures. Where BINARY's differ both are left in
+# ./stock-different. JOBS (2) scenes at a time, as povray sleeps for most of a small picture.
+set -euo pipefail
+binary=$(realpath "$1")
+here=$(cd "$(dirname "$0")" && pwd)
+root=$(cd "$here/../.." && pwd)
+"$root/tools/stock"
+
+export binary stock=$root/build/upstream/stock cache=$root/build/upstream/stock-pictures different=$PWD/stock-different
+export examples=$stock/usr/share/doc/povray/examples width=80 height=60
+export options="+W$width +H$height +WT1 -D -A +FP16 -GA +L$stock/usr/share/povray-3.7/include"
+key="$(cat "$stock/stamp") $options"
+if [ "$(cat "$cache/key" 2>/dev/null)" != "$key" ]; then
+	rm -rf "$cache"; mkdir -p "$cache"; echo "$key" >"$cache/key"
+fi
+work=$(mktemp -d)
+trap '[ -z "${renders:-}" ] || kill -- -$renders 2>/dev/null || true; rm -rf "$work"' EXIT
+trap 'exit 1' INT TERM
+# No settings of the user's or the machine's own; a home that a restricted povray.conf lets be read.
+export work POVINI=$work/none.ini HOME=$stock
+touch "$POVINI"
+
+render() { # BINARY SCENE SECONDS PIXELS LOG: each in a folder of its own, as some scenes write files
+	local folder status=0
+	folder=$(mktemp -d -p "$work")
+	(cd "$folder" && timeout --foreground -k 5 "$3" "$1" "+I$examples/$2" "+L$examples/$(dirname "$2")" $options +Opicture.ppm) >"$5" 2>&1 </dev/null || status=$?
+	# The header names the program's version, the pixels do not.
+	[ $status = 0 ] && [ -s "$folder/picture.ppm" ] && tail -c $((width * height * 6)) "$folder/picture.ppm" >"$folder/pixels" && mv "$folder/pixels" "$4"
+	rm -rf "$folder"
+	return $status
+}
+
+complaint() { grep -am1 -iE 'error|fault|abort|terminate' "$1" | tr -d '\r' | cut -c1-150; }
+
+compare() { # SCENE: one line, its first word identical, different, failed, or without (Debian's own povray fails)
+	local scene=$1 name status=0 pixels log
+	name=${scene//\//_} pixels=$(mktemp -p "$work") log=$(mktemp -p "$work")
+	if [ ! -f "$cache/$name" ] && [ ! -f "$cache/$name.without" ]; then
+		render "$stock/usr/bin/povray" "$scene" 120 "$pixels" "$log" || status=$?
+		if [ $status = 0 ] && [ -s "$pixels" ]; then mv "$pixels" "$cache/$name"
+		else echo "exit $status $(complaint "$log")" >"$cache/$name.without"; fi
+	fi
+	if [ -f "$cache/$name.without" ]; then echo "without $scene: Debian's povray: $(cat "$cache/$name.without")"; return; fi
+	status=0; : >"$pixels"
+	render "$binary" "$scene" 240 "$pixels" "$log" || status=$?
+	if [ $status != 0 ] || [ ! -s "$pixels" ]; then echo "failed $scene: exit $status $(complaint "$log")"
+	elif cmp -s "$cache/$name" "$pixels"; then echo "identical $scene"
+	else
+		mkdir -p "$different"
+		for picture in "$cache/$name" "$pixels"; do
+			{ printf 'P6\n%d %d\n65535\n' $width $height; cat "$picture"; } >"$different/${name%.pov}.$([ "$picture" = "$pixels" ] && echo ours || echo stock).ppm"
+		done
+		# cmp counts bytes from 1 and prints them in octal; of a channel's two bytes the first is what one sees.
+		echo "different $scene: $(cmp -l "$cache/$name" "$pixels" | awk '
+			function octal(o) { return int(o / 100) * 64 + int(o / 10) % 10 * 8 + o % 10 }
+			!seen[int(($1 - 1) / 6)]++ { n++ }
+			$1 % 2 { d = octal($2) - octal($3); if (d < 0) d = -d; if (d > most) most = d }
+			END { printf "%d pixels, by up to %d/255", n, most }')"
+	fi
+	rm -f "$pixels" "$log"
+}
+export -f render complaint compare
+
+words() { sed 's/[[:space:]].*//; /^#/d; /^$/d' "$1"; }
+if [ "${2:-}" = --all ]; then
+	required=111
+	(cd "$examples" && find . -name '*.pov' | sed 's|^\./||' | sort) | grep -vxFf <(words "$here/stock-excluded.txt") >"$work/scenes"
+else
+	words "$here/stock-scenes.txt" >"$work/scenes"
+	required=40
+fi
+# A process group of its own, so that stopping the test stops the renders.
+set -m
+xargs -P "${JOBS:-2}" -d '\n' -n1 bash -c 'compare "$1"' - <"$work/scenes" >"$work/results" &
+renders=$!
+set +m
+wait $renders
+renders=
+sort "$work/results" | grep -vE '^(identical|without) ' || true
+count() { grep -c "^$1 " "$work/results" || true; }
+if [ "${2:-}" = --all ]; then echo "(not compared: $(count without) scenes that Debian's own povray cannot render, $(words "$here/stock-excluded.txt" | wc -l) excluded)"
+else grep '^without ' "$work/results" || true; fi
+echo "$(count identical) identical, $(count different) different, $(count failed) failed"
+[ "$(count different)$(count failed)" = 00 ] && [ "$(count identical)" -ge $required ]

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+/// What the program says of a picture: the message at the start, the statistics, the ray paths. And that pictures
+/// depend on neither the bounding method nor the number of threads.
+#include "povray.h"
+#include "blackhole/oracle.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+using blackhole::Vec3;
+
+namespace {
+
+const std::string camera = "camera { location <0, 1, -15> look_at <0, 0, 0> } sky_sphere { pigment { gradient y color_map { [0 rgb x] [1 rgb z] } scale 2 translate -y } }\n";
+const std::string objects = "sphere { <3, 0, 3>, 1 pigment { rgb y } finish { reflection 0.5 ambient 1 } } sphere { <-3, 0, 2>, 1 pigment { rgb 1 } finish { ambient 1 } } "
+	"plane { y, -4 pigment { checker rgb 0 rgb 1 } finish { ambient 1 } }\n";
+
+double value(const std::string& text, const std::string& label) {
+	const std::size_t at = text.find(label);
+	return at == std::string::npos ? -1 : std::strtod(text.c_str() + at + label.size(), nullptr);
+}
+
+std::string joined(const std::string& text) {
+	std::string out;
+	for (char c : text)
+		out += c == '\n' ? ' ' : c;
+	return out;
+}
+
+}
+
+TEST(Report, SaysWhatTheSceneRequires) {
+	EXPECT_NE(povray(camera + "blackhole { 0, 1 }", 16, 12).text.find("only the sky remains"), std::string::npos);
+	const Rendering run = povray(camera + objects + "sphere { <0, 0, 500>, 1 } blackhole { 0, 1 effect_radius 20 }", 16, 12);
+	EXPECT_NE(joined(run.text).find("3 of 4 objects within reach"), std::string::npos) << run.text;
+	const Rendering straddles = povray(camera + "sphere { <0, 1, 0>, 0.5 pigment { rgb 1 } } blackhole { 0, 1 }", 16, 12);
+	EXPECT_NE(joined(straddles.text).find("may reach into the horizon"), std::string::npos) << straddles.text;
+}
+
+TEST(Report, Statistics) {
+	const Rendering sky = povray(camera + "blackhole { 0, 1 }", 32, 24);
+	EXPECT_EQ(value(sky.text, "Bent Rays:"), 32 * 24);
+	int black = 0;
+	for (int y = 0; y < 24; y++)
+		for (int x = 0; x < 32; x++)
+			black += sky.picture.black(x, y);
+	EXPECT_EQ(value(sky.text, "Captured:"), black);
+	EXPECT_GT(black, 0);
+	EXPECT_EQ(value(sky.text, "Chords:"), 0) << "only the sky: no chords";
+
+	const Rendering full = povray(camera + objects + "blackhole { 0, 1 }", 32, 24);
+	EXPECT_EQ(value(full.text, "Chords Tested:") + value(full.text, "Skipped:"), value(full.text, "Chords:"));
+	EXPECT_GT(value(full.text, "Chords Tested:"), 0);
+	EXPECT_NEAR(value(full.text, "Per Ray:"), value(full.text, "Chords:") / value(full.text, "Bent Rays:"), 0.006);
+	EXPECT_GE(value(full.text, "Per Ray:"), 1);
+	EXPECT_GT(value(full.text, "Most Turns:"), 0.4);
+
+	EXPECT_EQ(povray(camera + objects, 16, 12).text.find("Bent Rays"), std::string::npos) << "no hole: not a word";
+}
+
+TEST(Report, NoCameraRayStartsInAHorizonUnnoticed) {
+	const Rendering run = povray(camera + objects + "blackhole { 0, 1 }", 16, 12);
+	EXPECT_EQ(run.text.find("started at or inside"), std::string::npos);
+	EXPECT_EQ(run.text.find("could not be followed"), std::string::npos);
+}
+
+TEST(Pictures, DependOnNeitherBoundingNorThreads) {
+	const std::string scene = camera + objects + "union { #for (I, 0, 11) sphere { <5*cos(I), I/4 - 2, 5*sin(I)>, 0.4 pigment { rgb <1, I/12, 0> } finish { ambient 0.5 reflection 0.2 } } #end } "
+		"light_source { <20, 30, -20> rgb 1 } blackhole { 0, 1 }";
+	const Rendering first = povray(scene, 64, 48);
+	ASSERT_FALSE(first.picture.samples.empty()) << first.text;
+	for (const char* words : {"+BM0 -MB", "+BM2", "-MB", "+UV", "+WT4", "+WT8 +BM2"})
+		EXPECT_TRUE(first.picture == povray(scene, 64, 48, words).picture) << words;
+}
+
+// The chords written are those traced: they join, they end where the row says, and lie on the exact path.
+TEST(Ray_Paths, AreTheTracedChords) {
+	const Rendering run = povray(camera + objects + "blackhole { 0, 1 tolerance 1e-4 }", 32, 24, "Ray_Paths=paths.csv Ray_Paths_Grid=8x6");
+	std::ifstream in(run.folder + "/paths.csv");
+	std::string line;
+	ASSERT_TRUE(std::getline(in, line)) << run.text;
+	EXPECT_EQ(line, "column,row,ray,level,chord,hole,x0,y0,z0,x1,y1,z1,tested,end,drift");
+	std::map<std::string, int> ends;
+	int rays = 0, rows = 0;
+	Vec3 last{0, 0, 0}, origin{0, 0, 0}, start_direction{0, 0, 0};
+	while (std::getline(in, line)) {
+		std::vector<std::string> f;
+		std::stringstream s(line);
+		for (std::string cell; std::getline(s, cell, ',');)
+			f.push_back(cell);
+		f.resize(15);
+		const Vec3 from{std::stod(f[6]), std::stod(f[7]), std::stod(f[8])}, to{std::stod(f[9]), std::stod(f[10]), std::stod(f[11])};
+		if (f[4] == "0") {
+			rays++;
+			origin = from;
+			start_direction = to - from;
+			if (f[3] == "1") {
+				EXPECT_LT(length(from - Vec3{0, 1, -15}), 1e-12) << "camera rays start at the camera";
+			}
+		} else {
+			EXPECT_LT(length(from - last), 1e-9) << line;
+		}
+		last = to;
+		rows++;
+		if (!f[13].empty()) {
+			ends[f[13]]++;
+			EXPECT_LT(std::stod(f[14]), 1e-4) << "drift";
+			if (f[13] == "horizon") {
+				EXPECT_NEAR(length(to), 1, 1e-9);
+			}
+		}
+	}
+	EXPECT_GE(rays, 48) << "one camera ray for each cell, and reflections";
+	EXPECT_GT(ends["sky"], 0);
+	EXPECT_GT(ends["object"], 0);
+	EXPECT_GT(ends["horizon"], 0);
+
+	const Rendering off = povray(camera + objects + "blackhole { 0, 1 }", 32, 24, "Ray_Paths=paths.csv Ray_Paths_Grid=8x6 Blackhole=off");
+	std::ifstream twin(off.folder + "/paths.csv");
+	int straight = 0;
+	while (std::getline(twin, line))
+		straight++;
+	EXPECT_GT(straight, 48) << "the hole-free twin has paths too, straight ones";
+	EXPECT_LT(straight, rows);
+}
+
+TEST(Ray_Paths, VrmlAndBadOptions) {
+	const Rendering run = povray(camera + objects + "blackhole { 0, 1 }", 32, 24, "Ray_Paths=paths.wrl Ray_Paths_Grid=4x3");
+	std::ifstream in(run.folder + "/paths.wrl");
+	std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+	EXPECT_EQ(text.rfind("#VRML V2.0 utf8\n", 0), 0u) << run.text;
+	int open = 0;
+	for (char c : text)
+		open += (c == '{' || c == '[') - (c == '}' || c == ']');
+	EXPECT_EQ(open, 0);
+	EXPECT_NE(text.find("IndexedLineSet"), std::string::npos);
+
+	const struct {
+		const char *words, *says;
+	} bad[] = {{"Ray_Paths=paths.txt", "must end in .csv or .wrl"}, {"Ray_Paths=p.csv Ray_Paths_Grid=0x4", "rays across x rays down"},
+		{"Ray_Paths=p.csv Ray_Paths_Grid=many", "rays across x rays down"}};
+	for (const auto& b : bad) {
+		const Rendering r = povray(camera + "blackhole { 0, 1 }", 8, 6, b.words);
+		EXPECT_NE(r.exit_code, 0) << b.words;
+		EXPECT_NE(joined(r.text).find(b.says), std::string::npos) << b.words << "\n" << r.text;
+	}
+	const Rendering nowhere = povray(camera + "blackhole { 0, 1 }", 8, 6, "Ray_Paths=no/such/folder/p.csv");
+	EXPECT_FALSE(nowhere.picture.samples.empty()) << "the picture is not lost";
+	EXPECT_NE(joined(nowhere.text).find("cannot write there"), std::string::npos) << nowhere.text;
+}
+
+TEST(Ray_Paths, DoNotChangeThePicture) {
+	const Rendering with = povray(camera + objects + "blackhole { 0, 1 }", 32, 24, "Ray_Paths=p.csv"), without = povray(camera + objects + "blackhole { 0, 1 }", 32, 24);
+	EXPECT_TRUE(with.picture == without.picture);
+}
