@@ -74,7 +74,7 @@ INSTANTIATE_TEST_SUITE_P(Language, Refused, testing::Values(
 	Bad{"blackhole { <0, 0, -20.5>, 1 }", "at or inside the horizon, where no static observer can be; use camera \"falling\"", 3},
 	Bad{"blackhole { <0, 0, -21>, 1 camera \"coordinate\" }", "at or inside the horizon, where no coordinate observer can be", 3},
 	Bad{"blackhole { 0 }", "Expected", 3},
-	Bad{"blackhole { 0, 1", "Unexpected end of file", 3}));
+	Bad{"blackhole { 0, 1", "End of File found instead", 3}));
 
 namespace {
 

@@ -25,10 +25,12 @@ double value(const std::string& text, const std::string& label) {
 	return at == std::string::npos ? -1 : std::strtod(text.c_str() + at + label.size(), nullptr);
 }
 
+// Without the console's line breaks.
 std::string joined(const std::string& text) {
 	std::string out;
 	for (char c : text)
-		out += c == '\n' ? ' ' : c;
+		if (c != '\n' && !(c == ' ' && !out.empty() && out.back() == ' '))
+			out += c;
 	return out;
 }
 
@@ -37,7 +39,7 @@ std::string joined(const std::string& text) {
 TEST(Report, SaysWhatTheSceneRequires) {
 	EXPECT_NE(povray(camera + "blackhole { 0, 1 }", 16, 12).text.find("only the sky remains"), std::string::npos);
 	const Rendering run = povray(camera + objects + "sphere { <0, 0, 500>, 1 } blackhole { 0, 1 effect_radius 20 }", 16, 12);
-	EXPECT_NE(joined(run.text).find("3 of 4 objects within reach"), std::string::npos) << run.text;
+	EXPECT_NE(joined(run.text).find("3 of 4 objects within reach (1 plane, 2 sphere)"), std::string::npos) << run.text;
 	const Rendering straddles = povray(camera + "sphere { <0, 1, 0>, 0.5 pigment { rgb 1 } } blackhole { 0, 1 }", 16, 12);
 	EXPECT_NE(joined(straddles.text).find("may reach into the horizon"), std::string::npos) << straddles.text;
 }

@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <limits>
+#include <map>
+#include <typeinfo>
+
+#include <cxxabi.h>
 
 // frame.h must always be the first POV file included (pulls in platform config)
 #include "backend/frame.h"
@@ -141,6 +147,31 @@ static std::string Object_Name(const ObjectBase& object)
 	return text;
 }
 
+// "sphere", "csgunion": an object's kind, by its class; good enough for a message.
+static std::string Kind(const ObjectBase& object)
+{
+	int status;
+	char *name = abi::__cxa_demangle(typeid(object).name(), NULL, NULL, &status);
+	std::string kind(status == 0 ? name : "object");
+	free(name);
+	kind.erase(0, kind.rfind(':') + 1);
+	std::transform(kind.begin(), kind.end(), kind.begin(), tolower);
+	return kind;
+}
+
+// " (2 sphere, 1 plane)"
+static std::string Listed(const std::map<std::string, unsigned int>& kinds)
+{
+	std::string list;
+	char text[96];
+	for(std::map<std::string, unsigned int>::const_iterator i = kinds.begin(); i != kinds.end(); ++i)
+	{
+		snprintf(text, sizeof text, "%s%u %.60s", list.empty() ? "" : ", ", i->second, i->first.c_str());
+		list += text;
+	}
+	return list.empty() ? list : " (" + list + ")";
+}
+
 std::string Blackholes::Prepare(const SceneData& scene, MessageFactory& messages)
 {
 	std::string report;
@@ -151,6 +182,7 @@ std::string Blackholes::Prepare(const SceneData& scene, MessageFactory& messages
 		const Blackhole& hole = *holes[h];
 		unsigned int reached = 0, straddling = 0;
 		std::string first;
+		std::map<std::string, unsigned int> kinds;
 		for(size_t i = 0; i < scene.objects.size(); i++)
 		{
 			DBL nearest, farthest;
@@ -158,17 +190,17 @@ std::string Blackholes::Prepare(const SceneData& scene, MessageFactory& messages
 			if(nearest * hole.Radius >= hole.Reach())
 				continue;
 			reached++;
+			kinds[Kind(*scene.objects[i])]++;
 			shells[h].Add(nearest, farthest);
 			if((nearest <= 1.0) && (farthest > 1.0) && (straddling++ == 0))
 				first = Object_Name(*scene.objects[i]);
 		}
 		shells[h].Merge();
-		snprintf(text, sizeof text, "Black hole at <%g,%g,%g>: Rs %g, effect radius %g, tolerance %g, method %s; %s%u of %u objects within reach%s.\n",
+		snprintf(text, sizeof text, "Black hole at <%g,%g,%g>: Rs %g, effect radius %g, tolerance %g, method %s; %s%u of %u objects within reach",
 		         hole.Center[X], hole.Center[Y], hole.Center[Z], hole.Radius, hole.Reach(), hole.Tolerance,
 		         blackhole::method_names[int(hole.Method)],
-		         reached == 0 ? "only the sky remains: " : "", reached, (unsigned int)scene.objects.size(),
-		         reached == 0 ? ", rays need no chords" : "");
-		report += text;
+		         reached == 0 ? "only the sky remains: " : "", reached, (unsigned int)scene.objects.size());
+		report += text + Listed(kinds) + (reached == 0 ? ", rays need no chords.\n" : ".\n");
 		if(straddling > 0)
 			messages.Warning(1, "%u object(s) may reach into the horizon of the black hole at <%g,%g,%g> and exist outside it only; first: %s.",
 			                 straddling, hole.Center[X], hole.Center[Y], hole.Center[Z], first.c_str());
