@@ -19,11 +19,12 @@ double crossing(const Piece& piece, double radius, bool outward) {
 		const double f = dot(p, p) - radius * radius, slope = 2 * dot(p, d);
 		const bool beyond = outward ? (f > 0 && slope > 0) : f < 0;
 		(beyond ? hi : lo) = t;
+		// No better than the radius's own rounding.
+		if (std::fabs(f) <= 4e-16 * radius * radius)
+			break;
 		double next = t - f / slope;
 		if (!(next > lo && next < hi))
 			next = (lo + hi) / 2;
-		if (std::fabs(next - t) <= 1e-16)
-			break;
 		t = next;
 	}
 	return t;
