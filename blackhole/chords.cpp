@@ -14,11 +14,13 @@ constexpr double share = 0.5 / 1.25;
 // A ramp's first nodes, in N.
 constexpr double ramp_nodes[] = {1.0 / 128, 1.0 / 32, 1.0 / 8, 1.0 / 2, 1};
 
-}
+} // namespace
 
 Chords::Chords(const Path& path, double tolerance, bool ramp)
 	: path_(path), scale_(1 / std::sqrt(8 * share * tolerance)), ramp_(ramp) {
 	load(0);
+	if (path.started_inside() && path.emerged() == 0)
+		ended_ = true;
 	if (path.started_inside() && path.emerged() > 0) {
 		const std::vector<Node>& nodes = path.nodes();
 		while (i_ + 2 < nodes.size() && nodes[i_ + 1].lambda < path.emerged())
@@ -62,6 +64,11 @@ void Chords::advance(double target) {
 	}
 	// d0 t + (d1 - d0) t^2 / 2 = c, solved without cancellation.
 	const double c = (target - piece_n_) / length_;
+	if (!(c >= 0)) { // not a number: no chord is better than chords without end
+		t_ = 1;
+		ended_ = true;
+		return;
+	}
 	t_ = std::clamp(2 * c / (d0_ + std::sqrt(std::max(0.0, d0_ * d0_ + 2 * (d1_ - d0_) * c))), 0.0, 1.0);
 }
 
@@ -96,4 +103,4 @@ bool Chords::next(Chord& chord) {
 	return true;
 }
 
-}
+} // namespace blackhole

@@ -12,11 +12,11 @@
 namespace blackhole {
 
 struct Chord {
-	Vec3 from, to;         ///< on the path
-	Vec3 tangent_from;     ///< the path's unit tangents there
+	Vec3 from, to;     ///< on the path
+	Vec3 tangent_from; ///< the path's unit tangents there
 	Vec3 tangent_to;
-	double nearest;        ///< no point of the chord is nearer to the centre
-	double farthest;       ///< none is farther
+	double nearest;  ///< no point of the chord is nearer to the centre
+	double farthest; ///< none is farther
 };
 
 /// Walks a solved path chord by chord. The path must outlive it and not change.
@@ -47,6 +47,6 @@ private:
 	void load(std::size_t i);
 };
 
-}
+} // namespace blackhole
 
 #endif

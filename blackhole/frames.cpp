@@ -10,7 +10,7 @@ Vec3 scale_radial(const Vec3& x, const Vec3& v, double s) {
 	return v + ((s - 1) * dot(v, e)) * e;
 }
 
-}
+} // namespace
 
 double static_factor(double r, double R) {
 	if (r >= R)
@@ -49,4 +49,4 @@ bool falling_to_coordinate(const Vec3& x, const Vec3& d, double R, Vec3& out) {
 	return true;
 }
 
-}
+} // namespace blackhole

@@ -26,6 +26,6 @@ Vec3 normal_to_static(const Vec3& x, const Vec3& n, double R);
 /// Rain frame: Taylor & Wheeler, Exploring Black Holes, 2000, project B; beta = sqrt(1/r).
 bool falling_to_coordinate(const Vec3& x, const Vec3& d, double R, Vec3& out);
 
-}
+} // namespace blackhole
 
 #endif

@@ -15,11 +15,12 @@ bool find_method(const char* name, Method& method) {
 	return false;
 }
 
-Step step_of(Method method) {
+const Integrator& integrator_of(Method method) {
 	switch (method) {
-	case Method::rk4: break;
+	case Method::rk4:
+		break;
 	}
-	return rk4_step;
+	return rk4;
 }
 
-}
+} // namespace blackhole

@@ -22,16 +22,25 @@ inline Vec2 acceleration(Vec2 p, double h2) {
 	return (-1.5 * h2 / (r2 * r2 * std::sqrt(r2))) * p;
 }
 
-/// Goes from one node of the path to the next. Each method chooses its own step, as a continuous function
-/// of the node and the orbit, so that neighbouring rays are computed alike and pictures do not tear.
-/// tolerance: radians, [1e-9, 0.1], of the whole path as physics.md has it.
-using Step = Node (*)(const Node& from, const Orbit& orbit, double tolerance);
+/// What a method needs to know of a whole path: computed once for each ray.
+struct Plan {
+	double h2;    ///< square of the conserved h
+	double scale; ///< the method's own measure of how small its steps must be
+};
 
-Step step_of(Method method);
+/// A way to compute paths. start makes the plan (tolerance: radians, [1e-9, 0.1], of the whole path, as docs/manual.md
+/// has it); step goes from one node to the next. A method chooses its own step, as a continuous function of the node and
+/// the orbit, so that neighbouring rays are computed alike and pictures do not tear.
+struct Integrator {
+	Plan (*start)(const Orbit& orbit, double tolerance);
+	Node (*step)(const Node& from, const Plan& plan);
+};
 
-/// rk4.cpp: the classical Runge-Kutta step of fourth order.
-Node rk4_step(const Node& from, const Orbit& orbit, double tolerance);
+const Integrator& integrator_of(Method method);
 
-}
+/// rk4.cpp: the classical Runge-Kutta method of fourth order.
+extern const Integrator rk4;
+
+} // namespace blackhole
 
 #endif

@@ -9,8 +9,7 @@ namespace {
 
 using Quad = __float128;
 
-template <typename T>
-struct Products {
+template <typename T> struct Products {
 	T r2, d2, s, h2; // |x|^2, |d|^2, x.d, |x cross d|^2
 	Products(const Vec3& x, const Vec3& d) {
 		const T a = x.x, b = x.y, c = x.z, e = d.x, f = d.y, g = d.z;
@@ -36,8 +35,7 @@ double root(double a) { return std::sqrt(a); }
 // Beyond 3 Rs comparing b with its critical value is well conditioned: escape iff outward or b > b_c,
 // with b^2 = h^2 / (d^2 - h^2 / r^3). Nearer, the square of the escape rule is compared, signs apart.
 // Returns a number > 0 for escape; sets scale to the size of what was subtracted.
-template <typename T>
-T margin(const Vec3& x, const Vec3& d, T& scale) {
+template <typename T> T margin(const Vec3& x, const Vec3& d, T& scale) {
 	const Products<T> p(x, d);
 	const T r = root(p.r2), r3 = p.r2 * r;
 	if (r >= 3) {
@@ -58,7 +56,7 @@ T margin(const Vec3& x, const Vec3& d, T& scale) {
 	return left - right;
 }
 
-}
+} // namespace
 
 Outcome classify(const Vec3& x, const Vec3& d) {
 	// Lengths near the ends of the exponent's range would overflow when squared four times.
@@ -96,4 +94,4 @@ Orbit::Orbit(const Vec3& x, const Vec3& d) {
 	h = speed * hu;
 }
 
-}
+} // namespace blackhole

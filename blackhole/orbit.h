@@ -44,6 +44,6 @@ struct Orbit {
 	Vec3 to_space(Vec2 q) const { return q.x * e1 + q.y * e2; }
 };
 
-}
+} // namespace blackhole
 
 #endif

@@ -41,7 +41,7 @@ Node node_at(const Node& from, const Node& to, double t, double h2) {
 	return n;
 }
 
-}
+} // namespace
 
 // Ends the path on the radius between the node before and this one.
 bool Path::finish(const Node& last, double radius, bool outward) {
@@ -54,17 +54,23 @@ bool Path::finish(const Node& last, double radius, bool outward) {
 // Steps until the sphere or the horizon. Returns whether the numbers did what classify() says.
 bool Path::trace(const Settings& settings) {
 	const double h2 = orbit_.h * orbit_.h, R = settings.effect_radius;
-	const Step step = step_of(settings.method);
+	const Integrator& integrator = integrator_of(settings.method);
+	const Plan plan = integrator.start(orbit_, settings.tolerance);
 	nodes_.clear();
 	nodes_.push_back({orbit_.p, orbit_.v, acceleration(orbit_.p, h2), 0});
 	half_turns_ = 0;
 	emerged_ = 0;
 	bool within = inside_;
 	while (nodes_.size() < most_steps) {
-		const Node next = step(nodes_.back(), orbit_, settings.tolerance);
+		const Node next = integrator.step(nodes_.back(), plan);
 		const double r2 = dot(next.p, next.p), outward = dot(next.p, next.v);
 		if (!(r2 < 1e300))
 			return false;
+		if (within && outward < 0) {
+			// Came out by less than a step, or not at all: nothing that the tolerance could tell from staying in.
+			nodes_.push_back(next);
+			return outcome_ == Outcome::captured;
+		}
 		if (within && r2 > 1) {
 			const Node before = nodes_.back();
 			emerged_ = before.lambda + crossing(Piece(before, next), 1, true) * (next.lambda - before.lambda);
@@ -127,4 +133,4 @@ double Path::drift() const {
 	return std::max(dh, std::fabs(energy - 1));
 }
 
-}
+} // namespace blackhole

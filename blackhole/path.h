@@ -28,7 +28,8 @@ public:
 	Outcome outcome() const { return outcome_; }
 	/// Whether the ray started at or inside the horizon; then nothing can be hit before emerged().
 	bool started_inside() const { return inside_; }
-	/// The affine parameter at which it left the horizon; 0 if it did not start inside.
+	/// The affine parameter at which it left the horizon; 0 if it did not start inside, or fell back before it was out
+	/// by as much as the tolerance can tell (started_inside() and captured).
 	double emerged() const { return emerged_; }
 
 	/// Nodes in order; at least two. The last lies on the effect sphere (escaped) or on the horizon (captured).
@@ -60,6 +61,6 @@ private:
 	int half_turns_ = 0;
 };
 
-}
+} // namespace blackhole
 
 #endif

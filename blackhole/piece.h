@@ -34,14 +34,12 @@ public:
 	/// Position at t in [0, 1].
 	Vec2 at(double t) const { return p0_ + t * (c1_ + t * (c2_ + t * (c3_ + t * (c4_ + t * c5_)))); }
 	/// Derivative of at() by t: the tangent, of no particular length.
-	Vec2 tangent(double t) const {
-		return c1_ + t * (2.0 * c2_ + t * (3.0 * c3_ + t * (4.0 * c4_ + t * (5.0 * c5_))));
-	}
+	Vec2 tangent(double t) const { return c1_ + t * (2.0 * c2_ + t * (3.0 * c3_ + t * (4.0 * c4_ + t * (5.0 * c5_)))); }
 
 private:
 	Vec2 p0_, c1_, c2_, c3_, c4_, c5_;
 };
 
-}
+} // namespace blackhole
 
 #endif

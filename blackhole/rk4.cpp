@@ -15,24 +15,21 @@ constexpr double longest = 0.4;
 constexpr double cost = 2.0;
 
 // An error made early grows by about 1 / |b / b_c - 1| on the way round the photon sphere.
-double conditioning(double h) {
-	return std::clamp(std::fabs(h / critical_b - 1), 1e-3, 1.0);
+double conditioning(double h) { return std::clamp(std::fabs(h / critical_b - 1), 1e-3, 1.0); }
+
+Plan start(const Orbit& orbit, double tolerance) {
+	const double h2 = orbit.h * orbit.h;
+	return {h2, cost * 1.5 * h2 / (tolerance * conditioning(orbit.h))};
 }
 
-double relative_step(const Node& n, const Orbit& orbit, double tolerance) {
-	const double r2 = dot(n.p, n.p), r3 = r2 * std::sqrt(r2), h2 = orbit.h * orbit.h;
-	const double turn = 1.5 * h2 / (r3 + h2);
+Node step(const Node& n, const Plan& plan) {
+	const double h2 = plan.h2, r2 = dot(n.p, n.p), r = std::sqrt(r2), r3 = r2 * r;
 	// Inside the horizon the energy is what remains of |v|^2 = 1 + h^2 / r^3 when nearly all of it cancels, and the
 	// force grows steeper than the step shrinks (the factor 40: as path_test.cpp measures it).
-	const double cancels = r2 < 1 ? (1 + h2 / r3) / (1 + h2) * (1 + 40 * (1 - std::sqrt(r2))) : 1;
-	return 1 / (1 / longest + std::sqrt(std::sqrt(cost * turn * cancels / (tolerance * conditioning(orbit.h)))));
-}
-
-}
-
-Node rk4_step(const Node& n, const Orbit& orbit, double tolerance) {
-	const double h2 = orbit.h * orbit.h;
-	const double dl = relative_step(n, orbit, tolerance) * length(n.p) / length(n.v);
+	const double cancels = r2 < 1 ? (1 + h2 / r3) / (1 + h2) * (1 + 40 * (1 - r)) : 1;
+	// F = 1.5 h^2 / (r^3 + h^2), times what one step may cost.
+	const double s = 1 / (1 / longest + std::sqrt(std::sqrt(plan.scale * cancels / (r3 + h2))));
+	const double dl = s * r / length(n.v);
 
 	const Vec2 v2 = n.v + (dl / 2) * n.a;
 	const Vec2 a2 = acceleration(n.p + (dl / 2) * n.v, h2);
@@ -49,4 +46,8 @@ Node rk4_step(const Node& n, const Orbit& orbit, double tolerance) {
 	return next;
 }
 
-}
+} // namespace
+
+const Integrator rk4 = {start, step};
+
+} // namespace blackhole

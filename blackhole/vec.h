@@ -36,6 +36,6 @@ inline Vec3 unit(Vec3 a) {
 	return l > 0 ? (1 / l) * a : a;
 }
 
-}
+} // namespace blackhole
 
 #endif

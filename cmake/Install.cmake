@@ -7,7 +7,11 @@ install(DIRECTORY ${POVRAY_TREE}/distribution/include ${POVRAY_TREE}/distributio
 install(DIRECTORY scenes/ DESTINATION ${CMAKE_INSTALL_DATADIR}/povray-3.7/scenes/blackhole
 	FILES_MATCHING PATTERN "*.pov" PATTERN "*.ini" PATTERN "*.inc")
 install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/povray-blackhole)
+# povray has the path of its includes compiled in.
 install(CODE "
+	if(NOT CMAKE_INSTALL_PREFIX STREQUAL \"${CMAKE_INSTALL_PREFIX}\")
+		message(WARNING \"This povray looks for its includes below ${CMAKE_INSTALL_PREFIX}, not below \${CMAKE_INSTALL_PREFIX}: configure with -DCMAKE_INSTALL_PREFIX=\${CMAKE_INSTALL_PREFIX} and build again\")
+	endif()
 	set(ours \"\$ENV{DESTDIR}${CMAKE_INSTALL_FULL_BINDIR}/povray\")
 	find_program(other povray NO_CACHE)
 	if(other AND NOT other STREQUAL ours)

@@ -36,7 +36,7 @@ Vec3 turned(std::mt19937_64& random, const Vec3& v) {
 	return v.x * a + v.y * b + v.z * cross(a, b);
 }
 
-}
+} // namespace
 
 TEST(Classify, AgreesWithFiftyDigits) {
 	std::mt19937_64 random(7);

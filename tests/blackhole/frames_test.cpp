@@ -24,7 +24,7 @@ double shadow(double r, double R) {
 	return lo / degree;
 }
 
-}
+} // namespace
 
 TEST(Frames, ShadowOfAStaticObserver) {
 	EXPECT_NEAR(shadow(10, 1000), 14.276, 5e-4);

@@ -13,8 +13,7 @@ using blackhole::Vec3;
 const Real pi = 3.14159265358979323846264338327950288L;
 
 // Gauss-Kronrod with bisection; the integrands below are analytic on their ranges.
-template <typename F>
-Real integrate(F f, Real a, Real b) {
+template <typename F> Real integrate(F f, Real a, Real b) {
 	if (a == b)
 		return 0;
 	return boost::math::quadrature::gauss_kronrod<Real, 61>::integrate(f, a, b, 12, 1e-14L);
@@ -32,12 +31,10 @@ struct Start {
 		a = std::atan2(s, Real(x.x) * d.x + Real(x.y) * d.y + Real(x.z) * d.z);
 		e2 = length(across) > 1e-300 ? unit(across) : unit(cross(e1, std::fabs(e1.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}));
 	}
-	Vec3 at(Real radius, Real phi) const {
-		return double(radius * std::cos(phi)) * e1 + double(radius * std::sin(phi)) * e2;
-	}
+	Vec3 at(Real radius, Real phi) const { return double(radius * std::cos(phi)) * e1 + double(radius * std::sin(phi)) * e2; }
 };
 
-}
+} // namespace
 
 Ray::Ray(Real r0, Real a) : r0_(r0) {
 	const Real s = std::sin(a);
@@ -188,4 +185,4 @@ double distance(const Vec3& x, const Vec3& d, const Vec3& q, int turns) {
 	return std::hypot(double(ray.distance(length(q), phi + double(2 * pi) * turns)), off_plane);
 }
 
-}
+} // namespace oracle

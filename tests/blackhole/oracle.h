@@ -51,13 +51,13 @@ blackhole::Vec3 point(const blackhole::Vec3& x, const blackhole::Vec3& d, double
 
 /// Follows the exact path until f changes its sign (from its value a little after the start), up to radius R or the
 /// horizon. Returns false if it never does; otherwise the point and the path's unit tangent there.
-bool first_hit(const blackhole::Vec3& x, const blackhole::Vec3& d, double R, const std::function<double(const blackhole::Vec3&)>& f,
-	blackhole::Vec3& point, blackhole::Vec3& tangent);
+bool first_hit(const blackhole::Vec3& x, const blackhole::Vec3& d, double R,
+	const std::function<double(const blackhole::Vec3&)>& f, blackhole::Vec3& point, blackhole::Vec3& tangent);
 
 /// Distance of a point q from the exact path through x along d, to first order; q must be near the path.
 /// turns: how often q has been round the hole already (its angle is taken in [2 pi turns, 2 pi turns + 2 pi)).
 double distance(const blackhole::Vec3& x, const blackhole::Vec3& d, const blackhole::Vec3& q, int turns = 0);
 
-}
+} // namespace oracle
 
 #endif

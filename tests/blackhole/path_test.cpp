@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 /// Paths and chords against exact geodesics: direction at exit, distance of every chord, the tolerance's promise.
 #include "blackhole/chords.h"
+#include "blackhole/frames.h"
 #include "blackhole/oracle.h"
 
 #include <gtest/gtest.h>
@@ -82,7 +83,7 @@ Worst measure(double r0, double tolerance, int rays, unsigned seed) {
 	return worst;
 }
 
-}
+} // namespace
 
 class Tolerance : public testing::TestWithParam<double> {};
 
@@ -91,8 +92,8 @@ TEST_P(Tolerance, IsKept) {
 	const double tolerance = GetParam();
 	for (double r0 : {999.0, 25.0, 7.5, 3.0, 1.6, 1.5, 1.2, 1.01}) {
 		const Worst w = measure(r0, tolerance, tolerance < 1e-5 ? 80 : 200, 11);
-		std::printf("tolerance %.0e  r0 %-5g  direction %.3f  chords %.3f of it  (%d rays, %d within 0.1%% of b_c), drift %.1e\n", tolerance,
-			r0, w.direction, w.distance, w.rays, w.near_critical, w.drift);
+		std::printf("tolerance %.0e  r0 %-5g  direction %.3f  chords %.3f of it  (%d rays, %d within 0.1%% of b_c), drift %.1e\n",
+			tolerance, r0, w.direction, w.distance, w.rays, w.near_critical, w.drift);
 		EXPECT_LT(w.direction, 1);
 		EXPECT_LT(w.distance, 1);
 		EXPECT_LT(w.drift, tolerance);
@@ -181,7 +182,30 @@ TEST(Path, KeepsTheToleranceDeepInsideTheHorizon) {
 				ASSERT_EQ(escapes, path.outcome() == Outcome::escaped);
 				if (!escapes || std::fabs(b / critical_b - 1) < 1e-3)
 					continue;
-				EXPECT_LT(length(cross(direction, path.end_tangent())) / tolerance, 1) << "r " << r << ", b " << b << ", tolerance " << tolerance;
+				EXPECT_LT(length(cross(direction, path.end_tangent())) / tolerance, 1)
+					<< "r " << r << ", b " << b << ", tolerance " << tolerance;
+			}
+}
+
+// Rays of next to no energy come out of the horizon by a hair and fall back: they end, and so do their chords.
+TEST(Path, EndsForEveryDirectionAFallingObserverLooks) {
+	for (double tolerance : {1e-2, 1e-3, 1e-5})
+		for (double r : {1.0, 0.999999, 0.999, 0.9, 0.5, 0.01})
+			for (int i = 0; i < 2000; i++) {
+				const double a = pi * (i + 0.5) / 2000;
+				const Vec3 x{r, 0, 0};
+				Vec3 d;
+				if (!falling_to_coordinate(x, {std::cos(a), std::sin(a), 0}, 1000, d))
+					continue;
+				Path path;
+				ASSERT_TRUE(path.solve(x, d, {1000, tolerance, Method::rk4})) << r << " " << a;
+				Chords chords(path, tolerance, false);
+				Chord c;
+				int n = 0;
+				while (chords.next(c)) {
+					ASSERT_LT(++n, 20000) << r << " " << a;
+					ASSERT_GE(length(c.from), 1 - 1e-9);
+				}
 			}
 }
 
@@ -209,7 +233,8 @@ TEST(Path, FollowsTheOutcomeAtTheEdge) {
 					const double b = critical_b * (1 + side * off);
 					const double s = b / r0 / std::sqrt(1 + b * b / (r0 * r0 * r0));
 					const double c = std::sqrt(1 - s * s) * (r0 > 1.5 ? -1 : 1);
-					ASSERT_TRUE(path.solve({r0, 0, 0}, {c, s, 0}, {1000, tolerance, Method::rk4})) << tolerance << " " << side * off << " " << r0;
+					ASSERT_TRUE(path.solve({r0, 0, 0}, {c, s, 0}, {1000, tolerance, Method::rk4}))
+						<< tolerance << " " << side * off << " " << r0;
 					ASSERT_LT(path.nodes().size(), 60000u);
 				}
 }

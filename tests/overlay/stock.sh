@@ -10,36 +10,41 @@ set -euo pipefail
 binary=$(realpath "$1")
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
+[ -x "$binary" ] || { echo "stock: no program $binary" >&2; exit 1; }
 "$root/tools/stock"
 
-export binary stock=$root/build/upstream/stock cache=$root/build/upstream/stock-pictures different=$PWD/stock-different
-export examples=$stock/usr/share/doc/povray/examples width=80 height=60
-export options="+W$width +H$height +WT1 -D -A +FP16 -GA"
-key="$(cat "$stock/stamp") $options, frame 2"
-if [ "$(cat "$cache/key" 2>/dev/null)" != "$key" ]; then
-	rm -rf "$cache"; mkdir -p "$cache"; echo "$key" >"$cache/key"
-fi
 work=$(mktemp -d)
 trap '[ -z "${renders:-}" ] || kill -- -$renders 2>/dev/null || true; rm -rf "$work"' EXIT
 trap 'exit 1' INT TERM
+# povray's command line has no words for a path with spaces, which the repository's may be.
+ln -s "$root/build/upstream/stock" "$work/stock"
+export work binary stock=$work/stock cache=$root/build/upstream/stock-pictures left=$PWD/stock-different
+export examples=$stock/usr/share/doc/povray/examples width=80 height=60 options="+WT1 -D -A +FP16 -GA"
 # No settings of the user's or the machine's own; a home that a restricted povray.conf lets be read.
-export work POVINI=$work/none.ini HOME=$stock
+export POVINI=$work/none.ini HOME=$root/build/upstream/stock
 touch "$POVINI"
+"$stock/usr/bin/povray" --version >"$work/log" 2>&1 || { echo "stock: Debian's povray does not start: $(tail -n1 "$work/log")" >&2; exit 1; }
+
+key="$(cat "$stock/stamp") $width x $height $options, frame 2"
+if [ "$(cat "$cache/key" 2>/dev/null)" != "$key" ]; then
+	rm -rf "$cache"; mkdir -p "$cache"; echo "$key" >"$cache/key"
+fi
 
 render() { # BINARY SCENE SECONDS PIXELS LOG: each in a folder of its own, as some scenes write files
-	local folder frame= status=0
+	local folder frame="" status=0
 	folder=$(mktemp -d -p "$work")
 	# Of a series by frame_number, which is 0 outside an animation: the second of three.
 	! grep -q frame_number "$examples/$2" || frame="+KFI1 +KFF3 +SF2 +EF2"
-	(cd "$folder" && timeout --foreground -k 5 "$3" "$1" "+I$examples/$2" "+L$examples/$(dirname "$2")" "+L$stock/usr/share/povray-3.7/include" \
-		$options $frame +Opicture.ppm) >"$5" 2>&1 </dev/null || status=$?
+	# The braces: bash's own word about a crash belongs to the log.
+	{ (cd "$folder" && timeout --foreground -k 5 "$3" "$1" "+I$examples/$2" "+L$examples/$(dirname "$2")" "+L$stock/usr/share/povray-3.7/include" \
+		"+W$width" "+H$height" $options $frame +Opicture.ppm); } >"$5" 2>&1 </dev/null || status=$?
 	# The header names the program's version, the pixels do not.
 	[ $status != 0 ] || tail -qc $((width * height * 6)) "$folder"/picture*.ppm >"$4" 2>/dev/null || status=1
 	rm -rf "$folder"
 	return $status
 }
 
-complaint() { grep -am1 -iE 'error|fault|abort|terminate' "$1" | tr -d '\r' | cut -c1-150; }
+complaint() { (grep -aoiE -m1 '(fatal|parse) error.*|segmentation fault|aborted|terminate called.*' "$1" || tail -n1 "$1") | tr -d '\r' | cut -c1-150; }
 
 compare() { # SCENE: one line, its first word identical, different, failed, or without (Debian's own povray fails)
 	local scene=$1 name status=0 pixels log
@@ -55,9 +60,9 @@ compare() { # SCENE: one line, its first word identical, different, failed, or w
 	if [ $status != 0 ]; then echo "failed $scene: exit $status $(complaint "$log")"
 	elif cmp -s "$cache/$name" "$pixels"; then echo "identical $scene"
 	else
-		mkdir -p "$different"
+		mkdir -p "$left"
 		for picture in "$cache/$name" "$pixels"; do
-			{ printf 'P6\n%d %d\n65535\n' $width $height; cat "$picture"; } >"$different/${name%.pov}.$([ "$picture" = "$pixels" ] && echo ours || echo stock).ppm"
+			{ printf 'P6\n%d %d\n65535\n' $width $height; cat "$picture"; } >"$left/${name%.pov}.$([ "$picture" = "$pixels" ] && echo ours || echo stock).ppm"
 		done
 		# cmp counts bytes from 1 and prints them in octal; of a channel's two bytes the first is what one sees.
 		echo "different $scene: $(cmp -l "$cache/$name" "$pixels" | awk '

@@ -11,9 +11,7 @@ namespace {
 
 // Coarse: the value over the range; fine: 1024 times that, which POV-Ray's patterns wrap to [0, 1). Black stays free:
 // both are painted between 0.1 and 0.9.
-const char* macro(bool fine) {
-	return fine ? "#declare Steps = 1024;" : "#declare Steps = 1;";
-}
+const char* macro(bool fine) { return fine ? "#declare Steps = 1024;" : "#declare Steps = 1;"; }
 
 const char* pigment = R"(
 #macro Coordinates(R) pigment { average pigment_map {
@@ -29,7 +27,7 @@ double decode(double coarse, double fine, double range) {
 	return ((whole + f) / 1024 * 2 - 1) * range;
 }
 
-}
+} // namespace
 
 Seen see(const std::string& scene, double range, int width, int height, const std::string& words) {
 	const Rendering coarse = povray(macro(false) + std::string(pigment) + scene, width, height, words);
@@ -50,9 +48,7 @@ Seen see(const std::string& scene, double range, int width, int height, const st
 	return seen;
 }
 
-std::string text_of(const Vec3& v) {
-	return "<" + number(v.x) + "," + number(v.y) + "," + number(v.z) + ">";
-}
+std::string text_of(const Vec3& v) { return "<" + number(v.x) + "," + number(v.y) + "," + number(v.z) + ">"; }
 
 Camera::Camera(Vec3 l, Vec3 d, double radians, int w, int h) : location(l), direction(unit(d)), width(w), height(h) {
 	const Vec3 across = unit(cross(std::fabs(direction.y) < 0.9 ? Vec3{0, 1, 0} : Vec3{1, 0, 0}, direction));
@@ -61,7 +57,8 @@ Camera::Camera(Vec3 l, Vec3 d, double radians, int w, int h) : location(l), dire
 }
 
 std::string Camera::text() const {
-	return "camera { location " + text_of(location) + " direction " + text_of(direction) + " right " + text_of(right) + " up " + text_of(up) + " }\n";
+	return "camera { location " + text_of(location) + " direction " + text_of(direction) + " right " + text_of(right) + " up " +
+		   text_of(up) + " }\n";
 }
 
 Vec3 Camera::pixel(int x, int y) const {

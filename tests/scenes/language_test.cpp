@@ -23,7 +23,7 @@ std::string unbroken(std::string text) {
 	return out;
 }
 
-}
+} // namespace
 
 class Refused : public testing::TestWithParam<Bad> {};
 
@@ -39,42 +39,48 @@ TEST_P(Refused, WithOneClearLine) {
 	EXPECT_NE(text.find("Error: "), std::string::npos);
 }
 
-INSTANTIATE_TEST_SUITE_P(Language, Refused, testing::Values(
-	Bad{"blackhole { 0, 1e-300 }", "radius must be between 1e-9 and 1e9; it is 1e-300", 3},
-	Bad{"blackhole { 0, 1e300 }", "radius must be between 1e-9 and 1e9; it is 1e+300", 3},
-	Bad{"blackhole { 0, -1 }", "radius must be between 1e-9 and 1e9; it is -1", 3},
-	Bad{"blackhole { 0, 0 }", "radius must be between 1e-9 and 1e9; it is 0", 3},
-	Bad{"#declare A = 1e300 * 1e300;\nblackhole { 0, A - A }", "radius must be between", 4},
-	Bad{"#declare A = 1e300 * 1e300;\nblackhole { <A - A, 0, 0>, 1 }", "the centre must be a point", 4},
-	Bad{"blackhole { 0, 1\n scale 1e12 }", "radius must be between 1e-9 and 1e9; it is 1e+12", 4},
-	Bad{"blackhole { 0, 1\n effect_radius 1.5 }", "effect_radius must exceed 1.5 times the Schwarzschild radius", 4},
-	Bad{"#declare A = 1e300 * 1e300;\nblackhole { 0, 1 effect_radius A - A }", "effect_radius must exceed", 4},
-	Bad{"blackhole { 0, 1\n\n tolerance 0.2 }", "tolerance must be between 1e-9 and 0.1 radians; it is 0.2", 5},
-	Bad{"blackhole { 0, 1 tolerance 1e-10 }", "tolerance must be between", 3},
-	Bad{"blackhole { 0, 1 method \"euler\" }", "unknown method \"euler\"; known: \"rk4\"", 3},
-	Bad{"blackhole { 0, 1 camera \"orbiting\" }", "unknown camera \"orbiting\"; known: \"static\", \"falling\", \"coordinate\"", 3},
-	Bad{"blackhole { 0, 1\n scale <1, 2, 1> }", "only moves, rotations and uniform scales", 4},
-	Bad{"blackhole { 0, 1 matrix <1, 0.5, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0> }", "only moves, rotations and uniform scales", 3},
-	Bad{"union { blackhole { 0, 1 } sphere { 9, 1 } scale <1, 2, 1> }", "only moves, rotations and uniform scales", 3},
-	Bad{"blackhole { 0, 1 texture { pigment { rgb 1 } } }", "has no texture and no interior", 3},
-	Bad{"blackhole { 0, 1 interior { ior 1.5 } }", "has no texture and no interior", 3},
-	Bad{"blackhole { 0, 1 bounded_by { sphere { 0, 2 } } }", "cannot be bounded or clipped", 3},
-	Bad{"blackhole { 0, 1 hollow }", "effect_radius, tolerance, method, camera", 3},
-	Bad{"difference { sphere { 0, 3 } blackhole { 0, 1 } }", "cannot be part of a merge, intersection or difference", 3},
-	Bad{"intersection { union { blackhole { 0, 1 } sphere { 0, 1 } } sphere { 0, 1 } }", "cannot be part of a merge, intersection or difference", 3},
-	Bad{"merge { blackhole { 0, 1 } sphere { 0, 1 } }", "cannot be part of a merge, intersection or difference", 3},
-	Bad{"sphere { 0, 1 bounded_by { blackhole { 0, 2 } } }", "cannot be part of a clip, a bound or a pattern", 3},
-	Bad{"sphere { 0, 1 clipped_by { blackhole { 0, 2 } } }", "cannot be part of a clip, a bound or a pattern", 3},
-	Bad{"light_source { 9, 1 looks_like { blackhole { 0, 1 } } }", "cannot be part of a looks_like", 3},
-	Bad{"light_source { 9, 1 projected_through { blackhole { 0, 1 } } }", "cannot be part of a projected_through", 3},
-	Bad{"blackhole { 0, 1 effect_radius 10 }\nblackhole { <15, 0, 0>, 1 effect_radius 10 }", "overlap; their largest radii that fit are 7.5 each", 4},
-	Bad{"blackhole { 0, 1 effect_radius 5 camera \"falling\" }\nblackhole { <15, 0, 0>, 1 effect_radius 5 camera \"falling\" }", "Only one black hole can have camera \"falling\"", 4},
-	Bad{"\nblackhole { <0, 0, -20>, 1 }", "the camera is at its centre", 4},
-	Bad{"blackhole { <0, 0, -20>, 1 camera \"falling\" }", "the camera is at its centre", 3},
-	Bad{"blackhole { <0, 0, -20.5>, 1 }", "at or inside the horizon, where no static observer can be; use camera \"falling\"", 3},
-	Bad{"blackhole { <0, 0, -21>, 1 camera \"coordinate\" }", "at or inside the horizon, where no coordinate observer can be", 3},
-	Bad{"blackhole { 0 }", "Expected", 3},
-	Bad{"blackhole { 0, 1", "End of File found instead", 3}));
+INSTANTIATE_TEST_SUITE_P(Language, Refused,
+	testing::Values(Bad{"blackhole { 0, 1e-300 }", "radius must be between 1e-9 and 1e9; it is 1e-300", 3},
+		Bad{"blackhole { 0, 1e300 }", "radius must be between 1e-9 and 1e9; it is 1e+300", 3},
+		Bad{"blackhole { 0, -1 }", "radius must be between 1e-9 and 1e9; it is -1", 3},
+		Bad{"blackhole { 0, 0 }", "radius must be between 1e-9 and 1e9; it is 0", 3},
+		Bad{"#declare A = 1e300 * 1e300;\nblackhole { 0, A - A }", "radius must be between", 4},
+		Bad{"#declare A = 1e300 * 1e300;\nblackhole { <A - A, 0, 0>, 1 }", "the centre must be a point", 4},
+		Bad{"blackhole { 0, 1\n scale 1e12 }", "radius must be between 1e-9 and 1e9; it is 1e+12", 4},
+		Bad{"blackhole { 0, 1\n effect_radius 1.5 }", "effect_radius must exceed 1.5 times the Schwarzschild radius", 4},
+		Bad{"#declare A = 1e300 * 1e300;\nblackhole { 0, 1 effect_radius A - A }", "effect_radius must exceed", 4},
+		Bad{"blackhole { 0, 1\n\n tolerance 0.2 }", "tolerance must be between 1e-9 and 0.1 radians; it is 0.2", 5},
+		Bad{"blackhole { 0, 1 tolerance 1e-10 }", "tolerance must be between", 3},
+		Bad{"blackhole { 0, 1 method \"euler\" }", "unknown method \"euler\"; known: \"rk4\"", 3},
+		Bad{"blackhole { 0, 1 camera \"orbiting\" }",
+			"unknown camera \"orbiting\"; known: \"static\", \"falling\", \"coordinate\"", 3},
+		Bad{"blackhole { 0, 1\n scale <1, 2, 1> }", "only moves, rotations and uniform scales", 4},
+		Bad{"blackhole { 0, 1 matrix <1, 0.5, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0> }", "only moves, rotations and uniform scales", 3},
+		Bad{"union { blackhole { 0, 1 } sphere { 9, 1 } scale <1, 2, 1> }", "only moves, rotations and uniform scales", 3},
+		Bad{"blackhole { 0, 1 texture { pigment { rgb 1 } } }", "has no texture and no interior", 3},
+		Bad{"blackhole { 0, 1 interior { ior 1.5 } }", "has no texture and no interior", 3},
+		Bad{"blackhole { 0, 1 bounded_by { sphere { 0, 2 } } }", "cannot be bounded or clipped", 3},
+		Bad{"blackhole { 0, 1 hollow }", "effect_radius, tolerance, method, camera", 3},
+		Bad{"difference { sphere { 0, 3 } blackhole { 0, 1 } }", "cannot be part of a merge, intersection or difference", 3},
+		Bad{"intersection { union { blackhole { 0, 1 } sphere { 0, 1 } } sphere { 0, 1 } }",
+			"cannot be part of a merge, intersection or difference", 3},
+		Bad{"merge { blackhole { 0, 1 } sphere { 0, 1 } }", "cannot be part of a merge, intersection or difference", 3},
+		Bad{"sphere { 0, 1 bounded_by { blackhole { 0, 2 } } }", "cannot be part of a clip, a bound or a pattern", 3},
+		Bad{"sphere { 0, 1 clipped_by { blackhole { 0, 2 } } }", "cannot be part of a clip, a bound or a pattern", 3},
+		Bad{"light_source { 9, 1 looks_like { blackhole { 0, 1 } } }", "cannot be part of a looks_like", 3},
+		Bad{"light_source { 9, 1 projected_through { blackhole { 0, 1 } } }", "cannot be part of a projected_through", 3},
+		Bad{"blackhole { 0, 1 effect_radius 10 }\nblackhole { <15, 0, 0>, 1 effect_radius 10 }",
+			"overlap; their largest radii that fit are 7.5 each", 4},
+		Bad{"blackhole { 0, 1 effect_radius 5 camera \"falling\" }\nblackhole { <15, 0, 0>, 1 effect_radius 5 camera \"falling\" "
+			"}",
+			"Only one black hole can have camera \"falling\"", 4},
+		Bad{"\nblackhole { <0, 0, -20>, 1 }", "the camera is at its centre", 4},
+		Bad{"blackhole { <0, 0, -20>, 1 camera \"falling\" }", "the camera is at its centre", 3},
+		Bad{"blackhole { <0, 0, -20.5>, 1 }", "at or inside the horizon, where no static observer can be; use camera \"falling\"",
+			3},
+		Bad{"blackhole { <0, 0, -21>, 1 camera \"coordinate\" }", "at or inside the horizon, where no coordinate observer can be",
+			3},
+		Bad{"blackhole { 0 }", "Expected", 3}, Bad{"blackhole { 0, 1", "End of File found instead", 3}));
 
 namespace {
 
@@ -87,7 +93,7 @@ void same(const std::string& a, const std::string& b) {
 	EXPECT_TRUE(first.picture == second.picture) << a << "\n" << b;
 }
 
-}
+} // namespace
 
 TEST(Language, OptionsStandInAnyOrder) {
 	same("blackhole { <1, 0, 0>, 2 effect_radius 50 tolerance 1e-3 method \"rk4\" camera \"static\" bend_lights off }",
@@ -101,15 +107,18 @@ TEST(Language, DeclaredMovedAndScaled) {
 	same(plain, "blackhole { 0, 1 translate <0.5, 0, 1> effect_radius 20 scale 2 }");
 	same(plain, "union { blackhole { 0, 2 effect_radius 40 } sphere { <50, 0, 0>, 1 } translate <1, 0, 2> }");
 	same(plain, "union { blackhole { 0, 2 effect_radius 40 } translate <1, 0, 2> }");
-	same(plain, "#declare Two = union { union { blackhole { 0, 2 effect_radius 40 } } sphere { <50, 0, 0>, 1 } } object { Two translate <1, 0, 2> }");
-	same("blackhole { <0, 0, 2>, 2 effect_radius 40 }", "blackhole { 0, 1 effect_radius 20 matrix <0, 2, 0, -2, 0, 0, 0, 0, 2, 0, 0, 2> }");
+	same(plain, "#declare Two = union { union { blackhole { 0, 2 effect_radius 40 } } sphere { <50, 0, 0>, 1 } } object { Two "
+				"translate <1, 0, 2> }");
+	same("blackhole { <0, 0, 2>, 2 effect_radius 40 }",
+		"blackhole { 0, 1 effect_radius 20 matrix <0, 2, 0, -2, 0, 0, 0, 0, 2, 0, 0, 2> }");
 }
 
 // A hole that is declared and not used does nothing; with Blackhole=off none does.
 TEST(Language, OffGivesTheHoleFreeTwin) {
 	const std::string scene = "sphere { <3, 1, 4>, 1.5 pigment { rgb x } } light_source { 9, 1 } " + std::string(camera);
 	const Rendering none = povray(scene, 24, 18), off = povray(scene + "blackhole { 0, 1 }", 24, 18, "Blackhole=off"),
-			on = povray(scene + "blackhole { 0, 1 }", 24, 18), declared = povray(scene + "#declare H = blackhole { 0, 1 }", 24, 18);
+					on = povray(scene + "blackhole { 0, 1 }", 24, 18),
+					declared = povray(scene + "#declare H = blackhole { 0, 1 }", 24, 18);
 	EXPECT_TRUE(none.picture == off.picture);
 	EXPECT_TRUE(none.picture == declared.picture);
 	EXPECT_FALSE(none.picture == on.picture);
@@ -122,14 +131,19 @@ TEST(Language, DeclareOnTheCommandLineSetsATolerance) {
 }
 
 TEST(Language, TheVersionIsPredeclared) {
-	const Rendering run = povray(std::string(camera) + "#ifdef (Blackhole_Version) #debug concat(\"version \", str(Blackhole_Version, 0, 1), \"\\n\") #end", 8, 6);
+	const Rendering run =
+		povray(std::string(camera) +
+				   "#ifdef (Blackhole_Version) #debug concat(\"version \", str(Blackhole_Version, 0, 1), \"\\n\") #end",
+			8, 6);
 	EXPECT_NE(run.text.find("version 1.0"), std::string::npos) << run.text;
 }
 
 // Far from each other two holes bend as each would alone.
 TEST(Language, SeveralHoles) {
-	const std::string scene = "camera { location <0, 0, -30> right 4/3*x direction 2*z } sky_sphere { pigment { checker rgb 0.2 rgb 1 scale 0.1 } } ";
-	const Rendering both = povray(scene + "blackhole { <-6, 0, 0>, 0.5 effect_radius 5 } blackhole { <6, 0, 0>, 0.5 effect_radius 5 }", 64, 48);
+	const std::string scene =
+		"camera { location <0, 0, -30> right 4/3*x direction 2*z } sky_sphere { pigment { checker rgb 0.2 rgb 1 scale 0.1 } } ";
+	const Rendering both =
+		povray(scene + "blackhole { <-6, 0, 0>, 0.5 effect_radius 5 } blackhole { <6, 0, 0>, 0.5 effect_radius 5 }", 64, 48);
 	const Rendering left = povray(scene + "blackhole { <-6, 0, 0>, 0.5 effect_radius 5 }", 64, 48);
 	ASSERT_FALSE(both.picture.samples.empty()) << both.text;
 	int black_left = 0, black_right = 0;
@@ -145,7 +159,9 @@ TEST(Language, SeveralHoles) {
 
 // An orthographic camera has many origins; those inside a horizon are black, counted and named.
 TEST(Language, OriginsInsideTheHorizonAreNamed) {
-	const Rendering run = povray("camera { orthographic location <0, 0, -0.5> look_at 0 right 8*x up 6*y } sky_sphere { pigment { rgb 1 } } blackhole { <3, 0, -0.5>, 1 camera \"coordinate\" }", 16, 12);
+	const Rendering run = povray("camera { orthographic location <0, 0, -0.5> look_at 0 right 8*x up 6*y } sky_sphere { pigment "
+								 "{ rgb 1 } } blackhole { <3, 0, -0.5>, 1 camera \"coordinate\" }",
+		16, 12);
 	EXPECT_EQ(run.exit_code, 0);
 	EXPECT_NE(unbroken(run.text).find("started at or inside the horizon"), std::string::npos) << run.text;
 }

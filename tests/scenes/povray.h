@@ -19,9 +19,9 @@ struct Picture {
 
 struct Rendering {
 	int exit_code = 0;
-	std::string text; ///< what was printed, from parsing on
+	std::string text;   ///< what was printed, from parsing on
 	std::string folder; ///< where it ran; removed when the process ends
-	Picture picture;  ///< empty if none was written
+	Picture picture;    ///< empty if none was written
 };
 
 /// Renders the scene (a `#version 3.7; global_settings { assumed_gamma 1 }` is put before it) with one thread and no

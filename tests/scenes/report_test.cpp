@@ -16,9 +16,11 @@ using blackhole::Vec3;
 
 namespace {
 
-const std::string camera = "camera { location <0, 1, -15> look_at <0, 0, 0> } sky_sphere { pigment { gradient y color_map { [0 rgb x] [1 rgb z] } scale 2 translate -y } }\n";
-const std::string objects = "sphere { <3, 0, 3>, 1 pigment { rgb y } finish { reflection 0.5 ambient 1 } } sphere { <-3, 0, 2>, 1 pigment { rgb 1 } finish { ambient 1 } } "
-	"plane { y, -4 pigment { checker rgb 0 rgb 1 } finish { ambient 1 } }\n";
+const std::string camera = "camera { location <0, 1, -15> look_at <0, 0, 0> } sky_sphere { pigment { gradient y color_map { [0 "
+						   "rgb x] [1 rgb z] } scale 2 translate -y } }\n";
+const std::string objects = "sphere { <3, 0, 3>, 1 pigment { rgb y } finish { reflection 0.5 ambient 1 } } sphere { <-3, 0, 2>, "
+							"1 pigment { rgb 1 } finish { ambient 1 } } "
+							"plane { y, -4 pigment { checker rgb 0 rgb 1 } finish { ambient 1 } }\n";
 
 double value(const std::string& text, const std::string& label) {
 	const std::size_t at = text.find(label);
@@ -34,7 +36,7 @@ std::string joined(const std::string& text) {
 	return out;
 }
 
-}
+} // namespace
 
 TEST(Report, SaysWhatTheSceneRequires) {
 	EXPECT_NE(povray(camera + "blackhole { 0, 1 }", 16, 12).text.find("only the sky remains"), std::string::npos);
@@ -72,8 +74,10 @@ TEST(Report, NoCameraRayStartsInAHorizonUnnoticed) {
 }
 
 TEST(Pictures, DependOnNeitherBoundingNorThreads) {
-	const std::string scene = camera + objects + "union { #for (I, 0, 11) sphere { <5*cos(I), I/4 - 2, 5*sin(I)>, 0.4 pigment { rgb <1, I/12, 0> } finish { ambient 0.5 reflection 0.2 } } #end } "
-		"light_source { <20, 30, -20> rgb 1 } blackhole { 0, 1 }";
+	const std::string scene = camera + objects +
+							  "union { #for (I, 0, 11) sphere { <5*cos(I), I/4 - 2, 5*sin(I)>, 0.4 pigment { rgb <1, I/12, 0> } "
+							  "finish { ambient 0.5 reflection 0.2 } } #end } "
+							  "light_source { <20, 30, -20> rgb 1 } blackhole { 0, 1 }";
 	const Rendering first = povray(scene, 64, 48);
 	ASSERT_FALSE(first.picture.samples.empty()) << first.text;
 	for (const char* words : {"+BM0 -MB", "+BM2", "-MB", "+UV", "+WT4", "+WT8 +BM2"})
@@ -82,7 +86,8 @@ TEST(Pictures, DependOnNeitherBoundingNorThreads) {
 
 // The chords written are those traced: they join, they end where the row says, and lie on the exact path.
 TEST(Ray_Paths, AreTheTracedChords) {
-	const Rendering run = povray(camera + objects + "blackhole { 0, 1 tolerance 1e-4 }", 32, 24, "Ray_Paths=paths.csv Ray_Paths_Grid=8x6");
+	const Rendering run =
+		povray(camera + objects + "blackhole { 0, 1 tolerance 1e-4 }", 32, 24, "Ray_Paths=paths.csv Ray_Paths_Grid=8x6");
 	std::ifstream in(run.folder + "/paths.csv");
 	std::string line;
 	ASSERT_TRUE(std::getline(in, line)) << run.text;
@@ -96,7 +101,8 @@ TEST(Ray_Paths, AreTheTracedChords) {
 		for (std::string cell; std::getline(s, cell, ',');)
 			f.push_back(cell);
 		f.resize(15);
-		const Vec3 from{std::stod(f[6]), std::stod(f[7]), std::stod(f[8])}, to{std::stod(f[9]), std::stod(f[10]), std::stod(f[11])};
+		const Vec3 from{std::stod(f[6]), std::stod(f[7]), std::stod(f[8])},
+			to{std::stod(f[9]), std::stod(f[10]), std::stod(f[11])};
 		if (f[4] == "0") {
 			rays++;
 			origin = from;
@@ -122,7 +128,8 @@ TEST(Ray_Paths, AreTheTracedChords) {
 	EXPECT_GT(ends["object"], 0);
 	EXPECT_GT(ends["horizon"], 0);
 
-	const Rendering off = povray(camera + objects + "blackhole { 0, 1 }", 32, 24, "Ray_Paths=paths.csv Ray_Paths_Grid=8x6 Blackhole=off");
+	const Rendering off =
+		povray(camera + objects + "blackhole { 0, 1 }", 32, 24, "Ray_Paths=paths.csv Ray_Paths_Grid=8x6 Blackhole=off");
 	std::ifstream twin(off.folder + "/paths.csv");
 	int straight = 0;
 	while (std::getline(twin, line))
@@ -144,7 +151,8 @@ TEST(Ray_Paths, VrmlAndBadOptions) {
 
 	const struct {
 		const char *words, *says;
-	} bad[] = {{"Ray_Paths=paths.txt", "must end in .csv or .wrl"}, {"Ray_Paths=p.csv Ray_Paths_Grid=0x4", "rays across x rays down"},
+	} bad[] = {{"Ray_Paths=paths.txt", "must end in .csv or .wrl"},
+		{"Ray_Paths=p.csv Ray_Paths_Grid=0x4", "rays across x rays down"},
 		{"Ray_Paths=p.csv Ray_Paths_Grid=many", "rays across x rays down"}};
 	for (const auto& b : bad) {
 		const Rendering r = povray(camera + "blackhole { 0, 1 }", 8, 6, b.words);
@@ -157,6 +165,7 @@ TEST(Ray_Paths, VrmlAndBadOptions) {
 }
 
 TEST(Ray_Paths, DoNotChangeThePicture) {
-	const Rendering with = povray(camera + objects + "blackhole { 0, 1 }", 32, 24, "Ray_Paths=p.csv"), without = povray(camera + objects + "blackhole { 0, 1 }", 32, 24);
+	const Rendering with = povray(camera + objects + "blackhole { 0, 1 }", 32, 24, "Ray_Paths=p.csv"),
+					without = povray(camera + objects + "blackhole { 0, 1 }", 32, 24);
 	EXPECT_TRUE(with.picture == without.picture);
 }

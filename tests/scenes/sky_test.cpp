@@ -59,8 +59,8 @@ void compare(Frame frame, double r, double tolerance, double pixel, Vec3 look) {
 	const int w = 16, h = 12;
 	const Vec3 x = r * unit({0.3, 0.5, -1});
 	const Camera camera(centre + Rs * x, look, pixel, w, h);
-	const std::string scene = camera.text() + "sky_sphere { Coordinates(1.01) }\nblackhole { " + text_of(centre) + ", " + number(Rs) +
-		" tolerance " + number(tolerance) + " camera \"" + names[frame] + "\" }";
+	const std::string scene = camera.text() + "sky_sphere { Coordinates(1.01) }\nblackhole { " + text_of(centre) + ", " +
+							  number(Rs) + " tolerance " + number(tolerance) + " camera \"" + names[frame] + "\" }";
 	const Seen seen = see(scene, 1.01, w, h);
 	if (seen.values.empty())
 		return;
@@ -81,13 +81,13 @@ void compare(Frame frame, double r, double tolerance, double pixel, Vec3 look) {
 			}
 			worst = std::max(worst, length(direction - seen.at(i, j)));
 		}
-	std::printf("%-10s r %-6g tolerance %.0e: worst %.2e rad = %.3f of it; %d of %d black, %d near b_c\n", names[frame], r, tolerance, worst,
-		worst / tolerance, black, w * h, near);
+	std::printf("%-10s r %-6g tolerance %.0e: worst %.2e rad = %.3f of it; %d of %d black, %d near b_c\n", names[frame], r,
+		tolerance, worst, worst / tolerance, black, w * h, near);
 	EXPECT_EQ(wrong, 0) << "pixels black that should not be, or the other way round";
 	EXPECT_LT(worst, tolerance + 5e-8) << "5e-8: what the colours resolve";
 }
 
-}
+} // namespace
 
 class Sky : public testing::TestWithParam<double> {};
 
@@ -116,9 +116,7 @@ INSTANTIATE_TEST_SUITE_P(Tolerance, Sky, testing::Values(1e-2, 1e-3, 1e-4, 1e-5,
 
 // The shadow's half-angle in a picture, to a hundredth of a pixel of 0.02 degrees: the black disc's area.
 TEST(Shadow, HasTheHalfAngleOfTheFormula) {
-	const struct {
-		double r, degrees;
-	} cases[] = {{10, 14.276}, {3, 45.0143}};
+	const struct { double r, degrees; } cases[] = {{10, 14.276}, {3, 45.0143}};
 	for (const auto& c : cases) {
 		const int n = 801;
 		const double pixel = 2.4 * std::tan(c.degrees * 3.14159265358979323846 / 180) / n;

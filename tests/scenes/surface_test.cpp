@@ -62,7 +62,7 @@ Hits hits(const Camera& camera, const std::string& object, const std::function<d
 	return h;
 }
 
-}
+} // namespace
 
 class Hit : public testing::TestWithParam<double> {};
 
@@ -76,19 +76,22 @@ TEST_P(Hit, PointsLieOnTheExactPath) {
 	} cases[] = {
 		{"sphere r = 4 from outside", Camera({0, 3, -12}, {0, -3, 12}, 0.08, 12, 9), std::string("sphere { 0, 4") + painted + "}",
 			[](const Vec3& p) { return length(p) - 4; }},
-		{"sphere r = 8 from r = 2 inside", Camera({0, 0, -2}, {1, 0.1, -0.2}, 0.15, 12, 9), std::string("sphere { 0, 8") + painted + "}",
-			[](const Vec3& p) { return length(p) - 8; }},
-		{"sphere r = 8 from r = 1.3", Camera({0, 0, -1.3}, {0.1, 0, -1}, 0.1, 12, 9), std::string("sphere { 0, 8") + painted + "}",
-			[](const Vec3& p) { return length(p) - 8; }},
-		{"ball behind the hole", Camera({0, 1, -15}, {0, -1, 15}, 0.04, 16, 12), std::string("sphere { <1, 0.5, 8>, 2.5") + painted + "}",
-			[](const Vec3& p) { return length(p - Vec3{1, 0.5, 8}) - 2.5; }},
+		{"sphere r = 8 from r = 2 inside", Camera({0, 0, -2}, {1, 0.1, -0.2}, 0.15, 12, 9),
+			std::string("sphere { 0, 8") + painted + "}", [](const Vec3& p) { return length(p) - 8; }},
+		{"sphere r = 8 from r = 1.3", Camera({0, 0, -1.3}, {0.1, 0, -1}, 0.1, 12, 9),
+			std::string("sphere { 0, 8") + painted + "}", [](const Vec3& p) { return length(p) - 8; }},
+		{"ball behind the hole", Camera({0, 1, -15}, {0, -1, 15}, 0.04, 16, 12),
+			std::string("sphere { <1, 0.5, 8>, 2.5") + painted + "}",
+			[](const Vec3& p) {
+				return length(p - Vec3{1, 0.5, 8}) - 2.5;
+			}},
 		{"floor", Camera({0, 3, -10}, {0, -3, 10}, 0.08, 12, 9), std::string("plane { y, -2.5") + painted + "}",
 			[](const Vec3& p) { return p.y + 2.5; }},
 	};
 	for (const auto& c : cases) {
 		const Hits h = hits(c.camera, c.object, c.surface, tolerance);
-		std::printf("%-31s tolerance %.0e: off the path %.3f of it, off the point %.2e; %d hit, %d black, %d other\n", c.name, tolerance,
-			h.worst_distance / tolerance, h.worst_point, h.hit, h.black, h.wrong);
+		std::printf("%-31s tolerance %.0e: off the path %.3f of it, off the point %.2e; %d hit, %d black, %d other\n", c.name,
+			tolerance, h.worst_distance / tolerance, h.worst_point, h.hit, h.black, h.wrong);
 		EXPECT_GT(h.hit, 10);
 		// 3e-7: what the colours resolve of 80 units, over the nearest hit's radius of 2.5.
 		EXPECT_LT(h.worst_distance, tolerance + 3e-7);
@@ -107,8 +110,8 @@ void compare_plane(const char* texture, const std::function<bool(const Vec3& s, 
 	const Vec3 n = unit({0.2, 1, 0.1});
 	const double c = -2.2;
 	const Camera camera({0.5, 3, -7}, {0, -1, 1.2}, 0.05, 16, 12);
-	const std::string scene = camera.text() + "sky_sphere { Coordinates(1.01) } plane { " + text_of(n) + ", " + number(c) + " " + texture +
-		" } blackhole { 0, 1 tolerance 1e-7 }";
+	const std::string scene = camera.text() + "sky_sphere { Coordinates(1.01) } plane { " + text_of(n) + ", " + number(c) + " " +
+							  texture + " } blackhole { 0, 1 tolerance 1e-7 }";
 	const Seen seen = see(scene, 1.01, camera.width, camera.height);
 	ASSERT_FALSE(seen.values.empty());
 	const auto surface = [&](const Vec3& p) { return dot(p, n) - c; };
@@ -137,7 +140,8 @@ void compare_plane(const char* texture, const std::function<bool(const Vec3& s, 
 			if (law(unit(tangent), n, naive) && oracle::exit_direction(point, naive, R, direction, position))
 				without = std::max(without, length(direction - seen.at(i, j)));
 		}
-	std::printf("%s: worst %.2e rad on %d pixels (the law in coordinates would be off by %.2e)\n", texture, worst, compared, without);
+	std::printf(
+		"%s: worst %.2e rad on %d pixels (the law in coordinates would be off by %.2e)\n", texture, worst, compared, without);
 	EXPECT_GT(compared, 40);
 	// Two segments of tolerance 1e-7, the second from a point that the first moved: the plane is met at up to 70 degrees,
 	// and a ray at 2 % of b_c multiplies what it starts with by about 50.
@@ -145,7 +149,7 @@ void compare_plane(const char* texture, const std::function<bool(const Vec3& s, 
 	EXPECT_GT(without, 1e-2);
 }
 
-}
+} // namespace
 
 TEST(Mirror, ReflectsInTheStaticFrame) {
 	compare_plane("pigment { rgb 0 } finish { reflection 1 diffuse 0 ambient 0 }", [](const Vec3& s, const Vec3& n, Vec3& out) {
@@ -155,11 +159,12 @@ TEST(Mirror, ReflectsInTheStaticFrame) {
 }
 
 TEST(Glass, RefractsInTheStaticFrame) {
-	compare_plane("pigment { rgbt 1 } finish { diffuse 0 ambient 0 } interior { ior 1.3 }", [](const Vec3& s, const Vec3& n, Vec3& out) {
-		const double c = -dot(s, n), eta = 1 / 1.3, k = 1 - eta * eta * (1 - c * c);
-		out = eta * s + (eta * c - std::sqrt(k)) * n;
-		return c > 0;
-	});
+	compare_plane(
+		"pigment { rgbt 1 } finish { diffuse 0 ambient 0 } interior { ior 1.3 }", [](const Vec3& s, const Vec3& n, Vec3& out) {
+			const double c = -dot(s, n), eta = 1 / 1.3, k = 1 - eta * eta * (1 - c * c);
+			out = eta * s + (eta * c - std::sqrt(k)) * n;
+			return c > 0;
+		});
 }
 
 // Light goes straight for now; it is dark where its way meets the horizon, and only there.
@@ -167,7 +172,7 @@ TEST(Light, IsStraightAndBlockedByTheHorizon) {
 	const int n = 61;
 	const Camera camera({0, 30, 0}, {0, -1, 0.0001}, 0.006, n, n);
 	const std::string scene = camera.text() + "plane { y, -3 pigment { rgb 1 } finish { ambient 0 diffuse 1 } } "
-		"light_source { <0, 20, 0> rgb 1 } ";
+											  "light_source { <0, 20, 0> rgb 1 } ";
 	const Rendering with = povray(scene + "blackhole { <0, 2, 0>, 1 camera \"coordinate\" effect_radius 3 }", n, n);
 	ASSERT_FALSE(with.picture.samples.empty()) << with.text;
 	// The shadow's cone: half-angle asin(1 / 18) from the light 20 above, on a floor 23 below it.

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <memory>
 
 // frame.h must always be the first POV file included (pulls in platform config)
 #include "backend/frame.h"
@@ -33,7 +34,7 @@ Ray_Paths *Ray_Paths::Create(POVMS_Object& options)
 		return NULL;
 	if(!Ends_With(file, ".csv") && !Ends_With(file, ".wrl"))
 		throw POV_EXCEPTION(kParamErr, "Ray_Paths=" + file + ": the file's name must end in .csv or .wrl");
-	std::auto_ptr<Ray_Paths> paths(new Ray_Paths());
+	std::unique_ptr<Ray_Paths> paths(new Ray_Paths());
 	char rest;
 	if((sscanf(grid.c_str(), "%dx%d%c", &paths->columns, &paths->rows, &rest) != 2) ||
 	   (paths->columns < 1) || (paths->rows < 1) || (paths->columns > 10000) || (paths->rows > 10000))
