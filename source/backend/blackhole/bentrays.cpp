@@ -168,19 +168,19 @@ void Bent_Path::End()
 	bent->depth--;
 }
 
-const Ray& Bent_Path::Chord() const
+const Ray& Bent_Path::Bent_Chord() const
 {
-	return state != NULL ? state->chord : original;
+	return state->chord;
 }
 
-bool Bent_Path::Captured() const
+bool Bent_Path::Bent_Captured() const
 {
-	return (state != NULL) && state->captured;
+	return state->captured;
 }
 
-DBL Bent_Path::Travelled() const
+DBL Bent_Path::Bent_Travelled() const
 {
-	return state != NULL ? state->travelled : 0.0;
+	return state->travelled;
 }
 
 bool Bent_Path::End_With(const char *end, bool found)
@@ -449,9 +449,9 @@ void Bent_Path::Emerge(const VECTOR point)
 	state->volume = state->volume || !state->chord.GetInteriors().empty();
 }
 
-void Bent_Path::Compute_Volume(Colour& colour, Trace::TraceTicket& ticket)
+void Bent_Path::Bent_Volume(Colour& colour, Trace::TraceTicket& ticket)
 {
-	if((state == NULL) || state->spans.empty())
+	if(state->spans.empty())
 		return;
 	Trace& trace = bent->trace;
 	const SceneData& scene = bent->scene;

@@ -61,7 +61,7 @@ class Bent_Rays
 		Recorder *recorder;                ///< of the pixel in hand; NULL: not kept
 };
 
-/// One TraceRay's way. Costs a test for NULL in scenes without a hole.
+/// One TraceRay's way. The tests for NULL are inline: they are all that a scene without a hole pays.
 class Bent_Path
 {
 	public:
@@ -71,16 +71,20 @@ class Bent_Path
 		/// Whether the ray is ours; photons and subsurface rays go straight.
 		bool Bends() const { return state != NULL; }
 		/// The ray as given, or the chord in hand once Find_Intersection ran; the reference stays valid.
-		const Ray& Chord() const;
+		const Ray& Chord() const { return state == NULL ? original : Bent_Chord(); }
 		/// As Trace::FindIntersection, along the whole way. Depth of the intersection: along the last chord.
 		bool Find_Intersection(Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
 		/// Whether the ray ended in a horizon: opaque black.
-		bool Captured() const;
+		bool Captured() const { return (state != NULL) && Bent_Captured(); }
 		/// Length of all chords before the last, zero for a straight ray.
-		DBL Travelled() const;
+		DBL Travelled() const { return state == NULL ? 0.0 : Bent_Travelled(); }
 		/// Fog and media of all chords before the last, back to front.
-		void Compute_Volume(Colour& colour, Trace::TraceTicket& ticket);
+		void Compute_Volume(Colour& colour, Trace::TraceTicket& ticket) { if(state != NULL) Bent_Volume(colour, ticket); }
 	private:
+		const Ray& Bent_Chord() const;
+		bool Bent_Captured() const;
+		DBL Bent_Travelled() const;
+		void Bent_Volume(Colour& colour, Trace::TraceTicket& ticket);
 		void Begin();
 		void End();
 		bool Enter(VECTOR origin, blackhole::Vec3& direction);

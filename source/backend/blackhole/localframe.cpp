@@ -25,29 +25,43 @@ static Vec3 Graze(const Vec3& tangent, const Vec3& chord, const Vec3& normal)
 	return unit(tangent - (t / n2) * normal + (c < 0.0 ? -1e-6 : 1e-6) / sqrt(n2) * normal);
 }
 
-Local_Frame::Local_Frame(const Bent_Rays *bent, const Ray& r, const Vector3d& n, const VECTOR point) :
-	ray(r), normal(n), hole(NULL), bentray(NULL)
+struct Local_Frame::Seen
 {
-	const Bent_Segment *way = bent != NULL ? bent->Shaded(r) : NULL;
+	Seen(const Ray& r) : ray(r) { }
+	const Blackhole *hole;
+	Vec3 x;
+	Ray ray;
+	Vector3d normal;
+};
+
+void Local_Frame::Begin(const Bent_Rays *bent, const VECTOR point)
+{
+	const Bent_Segment *way = bent->Shaded(*ray);
 	if((way == NULL) || !way->has_tangent)
 		return;
-	hole = bent->holes.At(point);
+	const Blackhole *hole = bent->holes.At(point);
 	if(hole == NULL)
 		return;
-	x = hole->To_Hole(point);
-	const Vec3 scene_normal = Vec3_Of(*n);
+	seen = new Seen(*ray);
+	seen->hole = hole;
+	seen->x = hole->To_Hole(point);
+	const Vec3 scene_normal = Vec3_Of(**normal);
 	const DBL R = hole->Settings().effect_radius;
-	bentray = new Ray(r);
-	Assign_Vec3(bentray->Direction, coordinate_to_static(x, Graze(way->tangent, Vec3_Of(r.Direction), scene_normal), R));
-	bentnormal = n;
-	Turn(bentnormal);
+	Assign_Vec3(seen->ray.Direction, coordinate_to_static(seen->x, Graze(way->tangent, Vec3_Of(ray->Direction), scene_normal), R));
+	seen->normal = *normal;
+	Bent_Turn(seen->normal);
+	ray = &seen->ray;
+	normal = &seen->normal;
 }
 
-void Local_Frame::Turn(Vector3d& n) const
+void Local_Frame::End()
 {
-	if(bentray == NULL)
-		return;
-	const Vec3 t = normal_to_static(x, Vec3_Of(*n), hole->Settings().effect_radius);
+	delete seen;
+}
+
+void Local_Frame::Bent_Turn(Vector3d& n) const
+{
+	const Vec3 t = normal_to_static(seen->x, Vec3_Of(*n), seen->hole->Settings().effect_radius);
 	n = Vector3d(t.x, t.y, t.z);
 }
 

@@ -18,20 +18,22 @@ class Blackhole;
 class Local_Frame
 {
 	public:
-		Local_Frame(const Bent_Rays *bent, const Ray& ray, const Vector3d& normal, const VECTOR point);
-		~Local_Frame() { delete bentray; }
+		// The tests for NULL are inline, as in Bent_Path.
+		Local_Frame(const Bent_Rays *bent, const Ray& r, const Vector3d& n, const VECTOR point) : ray(&r), normal(&n), seen(NULL) { if(bent != NULL) Begin(bent, point); }
+		~Local_Frame() { if(seen != NULL) End(); }
 
-		const Ray& Seen_Ray() const { return bentray != NULL ? *bentray : ray; }
-		const Vector3d& Seen_Normal() const { return bentray != NULL ? bentnormal : normal; }
+		const Ray& Seen_Ray() const { return *ray; }
+		const Vector3d& Seen_Normal() const { return *normal; }
 		/// A perturbed normal, from the scene's to the frame's.
-		void Turn(Vector3d& n) const;
+		void Turn(Vector3d& n) const { if(seen != NULL) Bent_Turn(n); }
 	private:
-		const Ray& ray;
-		const Vector3d& normal;
-		const Blackhole *hole;
-		blackhole::Vec3 x;
-		Ray *bentray;
-		Vector3d bentnormal;
+		struct Seen; ///< what differs from the scene's, where something does
+		void Begin(const Bent_Rays *bent, const VECTOR point);
+		void End();
+		void Bent_Turn(Vector3d& n) const;
+		const Ray *ray;
+		const Vector3d *normal;
+		Seen *seen;
 
 		Local_Frame(const Local_Frame&);
 		Local_Frame& operator=(const Local_Frame&);
