@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-/// A ray through a scene with holes: straight outside the effect spheres, chord after chord inside.
-///
-/// trace.cpp's hooks hold a Bent_Path in each TraceRay; everything here works for one thread.
+/// What a thread needs to bend rays, and what holes mean for straight light. The rays' ways are in bentpath.h.
 #ifndef POVRAY_BENTRAYS_H
 #define POVRAY_BENTRAYS_H
 
@@ -9,8 +7,7 @@
 
 #include "backend/frame.h"
 #include "backend/render/ray.h"
-#include "backend/render/trace.h"
-#include "blackhole/chords.h"
+#include "blackhole/path.h"
 
 namespace pov
 {
@@ -18,6 +15,7 @@ namespace pov
 class Blackhole;
 class Blackholes;
 class SceneData;
+class Trace;
 struct Blackhole_Counts;
 struct Bent_Segment;
 struct Recorder;
@@ -59,48 +57,6 @@ class Bent_Rays
 		std::vector<Bent_Segment *> pool; ///< states, by depth of recursion
 		size_t depth;
 		Recorder *recorder;                ///< of the pixel in hand; NULL: not kept
-};
-
-/// One TraceRay's way. The tests for NULL are inline: they are all that a scene without a hole pays.
-class Bent_Path
-{
-	public:
-		Bent_Path(Bent_Rays *b, const Ray& ray) : bent(b), state(NULL), original(ray) { if(bent != NULL) Begin(); }
-		~Bent_Path() { if(state != NULL) End(); }
-
-		/// Whether the ray is ours; photons and subsurface rays go straight.
-		bool Bends() const { return state != NULL; }
-		/// The ray as given, or the chord in hand once Find_Intersection ran; the reference stays valid.
-		const Ray& Chord() const { return state == NULL ? original : Bent_Chord(); }
-		/// As Trace::FindIntersection, along the whole way. Depth of the intersection: along the last chord.
-		bool Find_Intersection(Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
-		/// Whether the ray ended in a horizon: opaque black.
-		bool Captured() const { return (state != NULL) && Bent_Captured(); }
-		/// Length of all chords before the last, zero for a straight ray.
-		DBL Travelled() const { return state == NULL ? 0.0 : Bent_Travelled(); }
-		/// Fog and media of all chords before the last, back to front.
-		void Compute_Volume(Colour& colour, Trace::TraceTicket& ticket) { if(state != NULL) Bent_Volume(colour, ticket); }
-	private:
-		const Ray& Bent_Chord() const;
-		bool Bent_Captured() const;
-		DBL Bent_Travelled() const;
-		void Bent_Volume(Colour& colour, Trace::TraceTicket& ticket);
-		void Begin();
-		void End();
-		bool Enter(VECTOR origin, blackhole::Vec3& direction);
-		bool Straight(const VECTOR from, const blackhole::Vec3& direction, DBL length, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
-		size_t Next_Sphere(const VECTOR from, const blackhole::Vec3& direction, size_t left, DBL& distance) const;
-		bool Through(size_t hole, VECTOR from, blackhole::Vec3& direction, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
-		void Emerge(const VECTOR point);
-		bool End_With(const char *end, bool found);
-		void Record(const VECTOR from, const VECTOR to, size_t hole, bool tested);
-
-		Bent_Rays *bent;
-		Bent_Segment *state;
-		const Ray& original;
-
-		Bent_Path(const Bent_Path&);
-		Bent_Path& operator=(const Bent_Path&);
 };
 
 }

@@ -1,15 +1,26 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-/// The state of one ray under way, between bentrays.cpp and localframe.cpp only.
+/// The state of one ray under way, shared by bentrays.cpp, bentpath.cpp, bentlegs.cpp and localframe.cpp only.
 #ifndef POVRAY_BENTSEGMENT_H
 #define POVRAY_BENTSEGMENT_H
 
 #include <vector>
 
 #include "backend/render/ray.h"
+#include "backend/blackhole/raypaths.h"
 #include "blackhole/vec.h"
 
 namespace pov
 {
+
+/// No hole's index: outside all effect spheres.
+static const size_t NO_HOLE = size_t(-1);
+
+/// The rays of the pixel in hand, if they are to be kept.
+struct Recorder
+{
+	int x, y;
+	Recorded_Pixel rays;
+};
 
 struct Bent_Segment
 {

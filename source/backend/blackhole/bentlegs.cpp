@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+
+// frame.h must always be the first POV file included (pulls in platform config)
+#include "backend/frame.h"
+#include "backend/math/vector.h"
+#include "backend/bounding/bbox.h"
+#include "backend/interior/interior.h"
+#include "backend/scene/objects.h"
+#include "backend/scene/scene.h"
+#include "backend/scene/threaddata.h"
+#include "backend/blackhole/bentpath.h"
+#include "backend/blackhole/bentsegment.h"
+#include "backend/blackhole/blackholes.h"
+
+// this must be the last file included
+#include "base/povdebug.h"
+
+namespace pov
+{
+
+using blackhole::Vec3;
+
+// POV-Ray drops hits nearer than MIN_ISECT_DEPTH to a ray's start. Chords after the first start this much early ...
+static const DBL BACK_UP = 2.0 * MIN_ISECT_DEPTH;
+
+// ... and accept what lies beyond the joint, less a little so that rounding on both sides leaves no gap: the least depth
+// a hit may have, on a chord of this length. It also is as far from the ray's own origin as POV-Ray wants it: chords may
+// be shorter than MIN_ISECT_DEPTH, and the second then starts behind the surface the ray has just left.
+static DBL Least_Depth(bool moved, DBL travelled, DBL length)
+{
+	if(!moved)
+		return 0.0;
+	const DBL overlap = min(0.1 * BACK_UP, 1e-3 * length);
+	return max(BACK_UP - overlap, BACK_UP + MIN_ISECT_DEPTH - travelled);
+}
+
+// Keeps what POV-Ray keeps, beyond the joint and outside the horizon.
+struct Chord_Condition : public RayObjectCondition
+{
+	Chord_Condition(const RayObjectCondition& c, DBL l, const Blackhole *h) : condition(c), least(l), hole(h) { }
+	virtual bool operator()(const Ray& ray, const ObjectBase *object, DBL depth) const
+	{
+		if(depth < least)
+			return false;
+		if(hole != NULL)
+		{
+			VECTOR p;
+			VEvaluateRay(p, ray.Origin, depth, ray.Direction);
+			if(hole->Distance(p) <= hole->Radius)
+				return false;
+		}
+		return condition(ray, object, depth);
+	}
+	const RayObjectCondition& condition;
+	DBL least;
+	const Blackhole *hole;
+};
+
+void Bent_Path::Record(const VECTOR from, const VECTOR to, size_t hole, bool tested)
+{
+	if(bent->recorder == NULL)
+		return;
+	Recorded_Ray::Chord c = { Vec3_Of(from), Vec3_Of(to), hole == NO_HOLE ? -1 : int(hole), tested };
+	bent->recorder->rays[state->record].Chords.push_back(c);
+}
+
+// Looks for a hit on a straight piece of the way; on return the chord in hand is that piece, and a hit's depth is from its start.
+bool Bent_Path::Search(const VECTOR from, const Vec3& direction, DBL length, const Blackhole *horizon, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post)
+{
+	Bent_Segment& s = *state;
+	const DBL back = s.moved ? BACK_UP : 0.0;
+	Assign_Vec3(s.chord.Direction, direction);
+	VEvaluateRay(s.chord.Origin, from, -back, s.chord.Direction);
+	isect.Depth = length + back;
+	const Chord_Condition condition(post, Least_Depth(s.moved, s.travelled, length), horizon);
+	const bool found = bent->trace.FindIntersection(isect, s.chord, pre, condition);
+	Assign_Vector(s.chord.Origin, from);
+	isect.Depth = max(0.0, isect.Depth - back);
+	return found;
+}
+
+// A piece of the way that hit nothing.
+void Bent_Path::Pass(const VECTOR from, const Vec3& direction, DBL length)
+{
+	if(state->volume)
+	{
+		Bent_Segment::Span span;
+		Assign_Vector(span.from, from);
+		Assign_Vec3(span.direction, direction);
+		span.length = length;
+		state->spans.push_back(span);
+	}
+	state->travelled += length;
+}
+
+// A leg outside all spheres, of the length given.
+bool Bent_Path::Straight(const VECTOR from, const Vec3& direction, DBL length, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post)
+{
+	Bent_Segment& s = *state;
+	const bool found = Search(from, direction, length, NULL, isect, pre, post);
+	s.has_tangent = false;
+	if(bent->recorder != NULL)
+	{
+		// What goes to infinity is drawn as far as the farthest sphere is wide.
+		DBL drawn = 10.0;
+		for(size_t i = 0; i < bent->holes.Holes().size(); i++)
+			drawn = max(drawn, 0.5 * bent->holes.Holes()[i]->Reach());
+		VECTOR to;
+		VEvaluateRay(to, from, found || (length < BOUND_HUGE / 2.0) ? isect.Depth : drawn, s.chord.Direction);
+		Record(from, to, NO_HOLE, true);
+	}
+	s.moved = true;
+	if(!found && (length < s.budget - s.travelled))
+		Pass(from, direction, length);
+	return found;
+}
+
+// Through one effect sphere. On true the chord in hand hit something; otherwise from and direction are where the
+// ray left the sphere, unless it was captured or ended (state->end).
+bool Bent_Path::Through(size_t index, VECTOR from, Vec3& direction, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post)
+{
+	Bent_Segment& s = *state;
+	const Blackhole& hole = *bent->holes.Holes()[index];
+	const Shells& shells = bent->holes.Shells_Of(index);
+	Blackhole_Counts& counts = bent->counts;
+	blackhole::Path& path = bent->path;
+	const bool solved = path.solve(hole.To_Hole(from), direction, hole.Settings());
+	const bool captured = (path.outcome() == blackhole::Outcome::captured);
+
+	counts.Entered++;
+	counts.Captured += captured;
+	counts.Nudged += path.nudged();
+	counts.Failed += !solved;
+	counts.Most_Swept = max(counts.Most_Swept, path.swept());
+	s.drift = max(s.drift, path.drift());
+	if(!path.nudged())
+		counts.Drift = max(counts.Drift, path.drift());
+
+	// Only what the scene requires: no chords where nothing can be hit, filled, recorded or measured along them.
+	if(!shells.Empty() || s.volume || (bent->recorder != NULL) || (s.budget < BOUND_HUGE))
+	{
+		blackhole::Chords chords(path, hole.Tolerance, !s.moved && !original.IsPrimaryRay());
+		blackhole::Chord c;
+		bool emerges = path.started_inside();
+		while(chords.next(c))
+		{
+			VECTOR start, end;
+			hole.To_Scene(c.from, start);
+			hole.To_Scene(c.to, end);
+			if(emerges)
+				Emerge(start);
+			emerges = false;
+			Vec3 along = Vec3_Of(end) - Vec3_Of(start);
+			const DBL chord_length = length(along), remains = s.budget - s.travelled;
+			if(chord_length == 0.0)
+				continue;
+			along = (1.0 / chord_length) * along;
+			counts.Chords++;
+			s.chords++;
+			const bool test = shells.Overlap(c.nearest, c.farthest);
+			(test ? counts.Tested : counts.Skipped)++;
+			const bool near_horizon = (c.nearest <= 1.0 + 1e-9) || ((c.nearest - 1.0) * hole.Radius < BACK_UP);
+			const bool found = test && Search(start, along, min(chord_length, remains), near_horizon ? &hole : NULL, isect, pre, post);
+			s.moved = true;
+			Record(start, found ? isect.IPoint : end, index, test);
+			if(found)
+			{
+				// The quadratic through both tangents whose mean is the chord.
+				const DBL t = min(1.0, isect.Depth / chord_length);
+				s.tangent = unit((1.0 - 4.0 * t + 3.0 * t * t) * c.tangent_from + (3.0 * t * t - 2.0 * t) * c.tangent_to + (6.0 * t - 6.0 * t * t) * along);
+				s.has_tangent = true;
+				return true;
+			}
+			if(chord_length >= remains)
+			{
+				s.end = "max distance";
+				return false;
+			}
+			Pass(start, along, chord_length);
+		}
+	}
+	s.moved = true;
+	s.captured = captured;
+	if(captured)
+	{
+		// The last chord before the horizon is the one in hand: its fog is in front of the black.
+		isect.Depth = 0.0;
+		if(!s.spans.empty())
+		{
+			Assign_Vector(s.chord.Origin, s.spans.back().from);
+			Assign_Vector(s.chord.Direction, s.spans.back().direction);
+			isect.Depth = s.spans.back().length;
+			s.travelled -= isect.Depth;
+			s.spans.pop_back();
+		}
+		return false;
+	}
+	direction = path.end_tangent();
+	hole.To_Scene(path.end(), from);
+	Assign_Vec3(s.chord.Direction, direction);
+	Assign_Vector(s.chord.Origin, from);
+	if(!solved)
+		s.end = "failed";
+	return false;
+}
+
+// A ray from inside the horizon begins to exist for the scene where it comes out, in whatever contains that point.
+void Bent_Path::Emerge(const VECTOR point)
+{
+	const SceneData& scene = bent->scene;
+	state->chord.ClearInteriors();
+	for(size_t i = 0; i < scene.objects.size(); i++)
+	{
+		ObjectPtr object = scene.objects[i];
+		if((object->interior != NULL) && Inside_BBox(point, object->BBox) && object->Inside(point, bent->trace.threadData))
+			state->chord.AppendInterior(object->interior);
+	}
+	state->volume = state->volume || !state->chord.GetInteriors().empty();
+}
+
+void Bent_Path::Bent_Volume(Colour& colour, Trace::TraceTicket& ticket)
+{
+	if(state->spans.empty())
+		return;
+	Trace& trace = bent->trace;
+	const SceneData& scene = bent->scene;
+	Ray& ray = state->chord;
+	if(!(trace.qualityFlags & Q_VOLUME) || !ray.IsHollowRay())
+		return;
+	for(size_t i = state->spans.size(); i-- > 0; )
+	{
+		const Bent_Segment::Span& span = state->spans[i];
+		Assign_Vector(ray.Origin, span.from);
+		Assign_Vector(ray.Direction, span.direction);
+		Intersection isect;
+		isect.Depth = span.length;
+		VEvaluateRay(isect.IPoint, span.from, span.length, span.direction);
+		if(!ray.GetInteriors().empty())
+			trace.media.ComputeMedia(ray.GetInteriors(), ray, isect, colour, ticket);
+		trace.media.ComputeMedia(const_cast<vector<Media>&>(scene.atmosphere), ray, isect, colour, ticket);
+		if(scene.fog != NULL)
+			trace.ComputeFog(ray, isect, colour);
+	}
+}
+
+}

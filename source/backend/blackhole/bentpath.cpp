@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <cmath>
+
+// frame.h must always be the first POV file included (pulls in platform config)
+#include "backend/frame.h"
+#include "backend/math/vector.h"
+#include "backend/scene/scene.h"
+#include "backend/blackhole/bentpath.h"
+#include "backend/blackhole/bentsegment.h"
+#include "backend/blackhole/blackholes.h"
+
+// this must be the last file included
+#include "base/povdebug.h"
+
+namespace pov
+{
+
+using blackhole::Vec3;
+
+// A ray may be passed from hole to hole; light that never leaves is as good as captured.
+static const int MOST_PASSAGES = 1000;
+
+void Bent_Path::Begin()
+{
+	if(original.IsPhotonRay() || original.IsSubsurfaceRay())
+		return;
+	if(bent->depth == bent->pool.size())
+		bent->pool.push_back(new Bent_Segment());
+	state = bent->pool[bent->depth++];
+	Bent_Segment& s = *state;
+	s.chord = original;
+	s.has_tangent = s.captured = s.moved = false;
+	s.travelled = 0.0;
+	s.chords = 0;
+	s.drift = 0.0;
+	s.end = "";
+	s.spans.clear();
+	const SceneData& scene = bent->scene;
+	s.volume = (scene.fog != NULL) || !scene.atmosphere.empty() || !original.GetInteriors().empty();
+	if(bent->recorder != NULL)
+	{
+		s.record = bent->recorder->rays.size();
+		bent->recorder->rays.push_back(Recorded_Ray());
+		bent->recorder->rays.back().Level = (unsigned int)bent->depth;
+		bent->recorder->rays.back().End = "max trace level";
+		bent->recorder->rays.back().Drift = 0.0;
+	}
+}
+
+void Bent_Path::End()
+{
+	if(bent->recorder != NULL)
+	{
+		bent->recorder->rays[state->record].Drift = state->drift;
+		if(*state->end != 0)
+			bent->recorder->rays[state->record].End = state->end;
+	}
+	bent->depth--;
+}
+
+const Ray& Bent_Path::Bent_Chord() const
+{
+	return state->chord;
+}
+
+bool Bent_Path::Bent_Captured() const
+{
+	return state->captured;
+}
+
+DBL Bent_Path::Bent_Travelled() const
+{
+	return state->travelled;
+}
+
+bool Bent_Path::End_With(const char *end, bool found)
+{
+	state->end = end;
+	bent->counts.Most_Chords = max(bent->counts.Most_Chords, state->chords);
+	return found;
+}
+
+// The coordinate direction in which the ray leaves its origin. False if no light comes from there.
+bool Bent_Path::Enter(VECTOR origin, Vec3& direction)
+{
+	direction = unit(Vec3_Of(original.Direction));
+	Assign_Vector(origin, original.Origin);
+	const Blackhole *falling = bent->holes.Falling();
+	if(original.IsPrimaryRay() && (falling != NULL))
+	{
+		const Vec3 x = falling->To_Hole(origin);
+		if(dot(x, x) == 0.0)
+		{
+			bent->counts.Origins_Inside++;
+			return false;
+		}
+		return falling_to_coordinate(x, direction, falling->Settings().effect_radius, direction);
+	}
+	const Blackhole *hole = bent->holes.At(origin);
+	if(hole == NULL)
+		return true;
+	const Vec3 x = hole->To_Hole(origin);
+	if(length(x) <= 1.0)
+	{
+		bent->counts.Origins_Inside++;
+		return false;
+	}
+	if(!original.IsPrimaryRay() || (hole->Camera != Blackhole::COORDINATE_CAMERA))
+		direction = static_to_coordinate(x, direction, hole->Settings().effect_radius);
+	return true;
+}
+
+// The next effect sphere on a straight way, other than the one just left.
+size_t Bent_Path::Next_Sphere(const VECTOR from, const Vec3& direction, size_t left, DBL& distance) const
+{
+	size_t next = NO_HOLE;
+	const std::vector<Blackhole *>& holes = bent->holes.Holes();
+	for(size_t i = 0; i < holes.size(); i++)
+	{
+		if(i == left)
+			continue;
+		const Vec3 x = Vec3_Of(from) - Vec3_Of(holes[i]->Center);
+		const DBL R = holes[i]->Reach(), b = dot(x, direction), c = dot(x, x) - R * R;
+		if((c < 0.0) && (next == NO_HOLE || distance > 0.0))
+		{
+			next = i;
+			distance = 0.0;
+		}
+		const DBL square = b * b - c;
+		if((b >= 0.0) || (square <= 0.0) || (c < 0.0))
+			continue;
+		const DBL t = c / (-b + sqrt(square));
+		if((next == NO_HOLE) || (t < distance))
+		{
+			next = i;
+			distance = t;
+		}
+	}
+	return next;
+}
+
+bool Bent_Path::Find_Intersection(Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post)
+{
+	Bent_Segment& s = *state;
+	VECTOR at;
+	Vec3 direction;
+	s.budget = isect.Depth;
+	if(!Enter(at, direction))
+	{
+		s.captured = true;
+		isect.Depth = 0.0;
+		bent->counts.Captured++;
+		return End_With("horizon", false);
+	}
+	size_t left = NO_HOLE;
+	for(int passages = 0; passages < MOST_PASSAGES; passages++)
+	{
+		DBL distance = 0.0;
+		const size_t next = Next_Sphere(at, direction, left, distance);
+		const DBL remains = s.budget - s.travelled;
+		if((next == NO_HOLE) || (distance > 0.0))
+		{
+			const bool last = (next == NO_HOLE) || (distance >= remains);
+			if(Straight(at, direction, last ? remains : distance, isect, pre, post))
+				return End_With("object", true);
+			if(last)
+				return End_With(s.budget < BOUND_HUGE ? "max distance" : "sky", false);
+			VEvaluateRay(at, at, distance, s.chord.Direction);
+		}
+		if(Through(next, at, direction, isect, pre, post))
+			return End_With("object", true);
+		if(s.captured || (*s.end != 0))
+			return End_With(s.captured ? "horizon" : s.end, false);
+		left = next;
+	}
+	s.captured = true;
+	return End_With("horizon", false);
+}
+
+}

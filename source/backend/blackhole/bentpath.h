@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+/// A ray through a scene with holes: straight outside the effect spheres, chord after chord inside.
+///
+/// trace.cpp's hooks hold a Bent_Path in each TraceRay. bentpath.cpp has the way from sphere to sphere,
+/// bentlegs.cpp what happens on each leg of it.
+#ifndef POVRAY_BENTPATH_H
+#define POVRAY_BENTPATH_H
+
+#include "backend/blackhole/bentrays.h"
+#include "backend/render/trace.h"
+#include "blackhole/chords.h"
+
+namespace pov
+{
+
+/// One TraceRay's way. The tests for NULL are inline: they are all that a scene without a hole pays.
+class Bent_Path
+{
+	public:
+		Bent_Path(Bent_Rays *b, const Ray& ray) : bent(b), state(NULL), original(ray) { if(bent != NULL) Begin(); }
+		~Bent_Path() { if(state != NULL) End(); }
+
+		/// Whether the ray is ours; photons and subsurface rays go straight.
+		bool Bends() const { return state != NULL; }
+		/// The ray as given, or the chord in hand once Find_Intersection ran; the reference stays valid.
+		const Ray& Chord() const { return state == NULL ? original : Bent_Chord(); }
+		/// As Trace::FindIntersection, along the whole way. Depth of the intersection: along the last chord.
+		bool Find_Intersection(Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
+		/// Whether the ray ended in a horizon: opaque black.
+		bool Captured() const { return (state != NULL) && Bent_Captured(); }
+		/// Length of all chords before the last, zero for a straight ray.
+		DBL Travelled() const { return state == NULL ? 0.0 : Bent_Travelled(); }
+		/// Fog and media of all chords before the last, back to front.
+		void Compute_Volume(Colour& colour, Trace::TraceTicket& ticket) { if(state != NULL) Bent_Volume(colour, ticket); }
+	private:
+		const Ray& Bent_Chord() const;
+		bool Bent_Captured() const;
+		DBL Bent_Travelled() const;
+		void Bent_Volume(Colour& colour, Trace::TraceTicket& ticket);
+		void Begin();
+		void End();
+		bool Enter(VECTOR origin, blackhole::Vec3& direction);
+		size_t Next_Sphere(const VECTOR from, const blackhole::Vec3& direction, size_t left, DBL& distance) const;
+		bool End_With(const char *end, bool found);
+		// bentlegs.cpp
+		bool Straight(const VECTOR from, const blackhole::Vec3& direction, DBL length, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
+		bool Through(size_t hole, VECTOR from, blackhole::Vec3& direction, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
+		bool Search(const VECTOR from, const blackhole::Vec3& direction, DBL length, const Blackhole *horizon, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
+		void Pass(const VECTOR from, const blackhole::Vec3& direction, DBL length);
+		void Emerge(const VECTOR point);
+		void Record(const VECTOR from, const VECTOR to, size_t hole, bool tested);
+
+		Bent_Rays *bent;
+		Bent_Segment *state;
+		const Ray& original;
+
+		Bent_Path(const Bent_Path&);
+		Bent_Path& operator=(const Bent_Path&);
+};
+
+}
+
+#endif
