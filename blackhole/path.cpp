@@ -128,9 +128,9 @@ double Path::drift() const {
 	const Node& n = nodes_.back();
 	const double r2 = dot(n.p, n.p);
 	const double h = cross(n.p, n.v);
-	const double energy = dot(n.v, n.v) - h * h / (r2 * std::sqrt(r2));
+	const double v2 = dot(n.v, n.v), energy = v2 - h * h / (r2 * std::sqrt(r2));
 	const double dh = orbit_.h > 0 ? std::fabs(h / orbit_.h - 1) : std::fabs(h);
-	return std::max(dh, std::fabs(energy - 1));
+	return std::max(dh, std::fabs(energy - 1) / std::max(1.0, v2));
 }
 
 } // namespace blackhole

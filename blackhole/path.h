@@ -42,8 +42,8 @@ public:
 
 	/// Angle swept around the hole's centre, radians, >= 0.
 	double swept() const;
-	/// The largest relative change of energy and angular momentum between start and end: what the integrator did
-	/// wrong, no more than a hint of the path's own error.
+	/// The largest relative change of angular momentum, and of energy over the size of its terms, between start and end:
+	/// what the integrator did wrong, no more than a hint of the path's own error.
 	double drift() const;
 	/// Whether the path had to be taken a hair to the side of b_c for the numbers to follow classify(); only
 	/// within 0.1 % of b_c.

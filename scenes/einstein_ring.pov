@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Einstein ring: camera, hole and a galaxy in one line. The galaxy is seen past the hole on every side at once, its core drawn out to a circle.
+// Einstein ring: camera, hole and a galaxy in one line. The galaxy is seen on every side of the hole, its core drawn out to a circle.
 //   ./render scenes/einstein_ring.pov
 //   ./render scenes/einstein_ring.pov Declare=Off=4   the galaxy four out of line: the circle parts into two arcs
 //   ./render scenes/einstein_ring.pov Blackhole=off   the galaxy as it is
@@ -22,30 +22,26 @@ blackhole { <0, 0, 0>, 1  tolerance Tol }
   (0.16 + pow(0.5 + 0.5*cos(2*atan2(y, x) + 5.2*ln(r + 0.02) + 1.3*Clump(x, y, 1)), 2))
 }
 #declare Arms = function (x, y, z) { min(0.999, max(0, Spiral(x, y, z, f_r(x, y, z)))) }
-#declare Shine = finish { emission 1 ambient 0 diffuse 0 }
+#default { finish { emission 1 ambient 0 diffuse 0 } }
 #declare Galaxy = disc {
   <0, 0, 0>, z, 1
-  texture {
-    pigment {
-      function { Arms(x, y, z) }
-      color_map { [0.02 rgbt <0, 0, 0, 1>] [0.12 rgbt <5, 9, 26, 0.99>] [0.4 rgbt <38, 62, 130, 0.99>] [0.8 rgbt <120, 160, 230, 0.99>] }
+  texture { pigment {
+    function { Arms(x, y, z) }
+    color_map {
+      [0.02 rgbt <0, 0, 0, 1>] [0.12 rgbt <5, 9, 26, 0.99>] [0.4 rgbt <38, 62, 130, 0.99>] [0.8 rgbt <120, 160, 230, 0.99>]
     }
-    finish { Shine }
-  }
-  texture {
-    pigment {
-      function { Arms(x, y, z)*min(1, max(0, 3*Clump(x, y, 9))) }
-      color_map { [0.05 rgbt <0, 0, 0, 1>] [0.5 rgbt <150, 25, 60, 0.99>] }
+  } }
+  texture { pigment {
+    function { Arms(x, y, z)*min(1, max(0, 3*Clump(x, y, 9))) }
+    color_map { [0.05 rgbt <0, 0, 0, 1>] [0.5 rgbt <150, 25, 60, 0.99>] }
+  } }
+  texture { pigment {
+    function { exp(-9*f_r(x, y, z)) }
+    color_map {
+      [0.0 rgbt <0, 0, 0, 1>] [0.1 rgbt <10, 5, 2.5, 0.99>] [0.45 rgbt <75, 38, 15, 0.99>]
+      [0.8 rgbt <170, 110, 55, 0.99>] [1 rgbt <260, 220, 160, 0.99>]
     }
-    finish { Shine }
-  }
-  texture {
-    pigment {
-      function { exp(-9*f_r(x, y, z)) }
-      color_map { [0.0 rgbt <0, 0, 0, 1>] [0.1 rgbt <10, 5, 2.5, 0.99>] [0.45 rgbt <75, 38, 15, 0.99>] [0.8 rgbt <170, 110, 55, 0.99>] [1 rgbt <260, 220, 160, 0.99>] }
-    }
-    finish { Shine }
-  }
+  } }
 }
 object { Galaxy scale 12 rotate <42, 0, 20> translate <Off, 0, 30> no_shadow }
 

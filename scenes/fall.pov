@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Fall: from rest far away through the horizon, looking in, a little past the hole. The black never closes round the camera.
+// Fall: from rest far away through the horizon, looking in, a little past the hole.
 //   ./render scenes/fall.ini                           the twelve frames
 //   ./render scenes/fall.pov Declare=R=1               one picture, at the horizon
 //   ./render scenes/fall.ini Blackhole=off             the same way without the hole
@@ -8,8 +8,8 @@ global_settings { assumed_gamma 1.0 }
 #include "functions.inc"
 #ifndef (Tol) #declare Tol = 1e-3; #end
 
-// A body that falls from rest at infinity has a time proportional to r^1.5 left to the centre.
-// From each frame to the next that time shrinks by the same factor, so R shrinks by one too: 12 at clock 0, 0.3 at clock 1.
+// A body that falls from rest at infinity has a time proportional to r^1.5 left to the centre. From each frame to the next
+// that time shrinks by the same factor, so R shrinks by one too: 12 at clock 0, 0.3 at clock 1, the horizon after frame 8.
 #ifndef (R) #declare R = 12*pow(0.3/12, clock); #end
 
 camera {
@@ -24,16 +24,21 @@ blackhole { <0, 0, 0>, 1  tolerance Tol  camera "falling" }
 
 // Four gates of lamps on the way, at rest over the hole; the last is the deepest.
 #declare Lamp = array[4] { rgb <1.3, 0.55, 0.12>, rgb <1.2, 0.20, 0.25>, rgb <0.75, 0.25, 1.2>, rgb <0.15, 0.85, 1.1> }
+#default { finish { emission 1 ambient 0 diffuse 0 } }
 #for (I, 0, 3)
   #for (J, 0, 23)
-    sphere { <1.6, 0, 0>, 0.035 rotate z*15*J translate -8*pow(0.6, I)*z pigment { Lamp[I] } finish { emission 1 ambient 0 diffuse 0 } }
+    sphere { <1.6, 0, 0>, 0.035 pigment { Lamp[I] } rotate z*15*J translate -8*pow(0.6, I)*z }
   #end
 #end
 
-// The sky: a band of clouds and three sizes of stars.
+// The sky: a band of clouds and two sizes of stars.
 #declare Octave = function (x, y, z, s) { (2*f_noise3d(s*x + 3*s, s*y + 5*s, s*z + 7*s) - 1)/pow(s, 0.85) }
-#declare Noise = function (x, y, z) { Octave(x,y,z,1) + Octave(x,y,z,2.1) + Octave(x,y,z,4.3) + Octave(x,y,z,8.7) + Octave(x,y,z,17.9) }
-#declare Clouds = function (x, y, z) { exp(-pow((y + 0.07*Noise(3*x, 3*y + 9, 3*z))/0.14, 2))*(0.38 + 0.1*z)*max(0.1, 1 + 0.9*Noise(6*x + 4, 9*y, 6*z)) }
+#declare Noise = function (x, y, z) {
+  Octave(x,y,z,1) + Octave(x,y,z,2.1) + Octave(x,y,z,4.3) + Octave(x,y,z,8.7) + Octave(x,y,z,17.9)
+}
+#declare Clouds = function (x, y, z) {
+  exp(-pow((y + 0.07*Noise(3*x, 3*y + 9, 3*z))/0.14, 2))*(0.38 + 0.1*z)*max(0.1, 1 + 0.9*Noise(6*x + 4, 9*y, 6*z))
+}
 #macro Stars (Cells, Radius, Power)   // cells to a radian; the largest star's radius, in radians
   pigment {
     crackle form <1, 0, 0>

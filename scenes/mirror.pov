@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Mirror: a looking-glass beside the hole shows the hole from another side, and bends what it shows a second time.
+// Mirror: a looking-glass beside the hole shows it from another side. The gilt arc at the hole's left is the glass once more, seen round the hole.
 //   ./render scenes/mirror.pov
 //   ./render scenes/mirror.pov Blackhole=off   the same place without the hole
 #version 3.7;
@@ -36,7 +36,8 @@ sphere { <1.5, -2.2, -4>, 0.8 pigment { rgb <0.80, 0.45, 0.03> } finish { Gloss 
 // Columns on a tiled floor
 #for (I, 0, 11)
   cylinder {
-    <0, -3, 22>, <0, 6, 22>, 0.8 pigment { rgb <0.80, 0.76, 0.70> } finish { ambient 0.02 diffuse 0.8 } rotate y*(5 + 30*I)
+    <0, -3, 22>, <0, 6, 22>, 0.8 rotate y*(5 + 30*I)
+    pigment { rgb <0.80, 0.76, 0.70> } finish { ambient 0.02 diffuse 0.8 }
   }
 #end
 disc {
@@ -48,7 +49,10 @@ disc {
 sky_sphere {
   pigment {
     gradient y
-    color_map { [0.25 rgb <0.02, 0.02, 0.05>] [0.44 rgb <0.18, 0.12, 0.16>] [0.5 rgb <0.65, 0.34, 0.20>] [0.56 rgb <0.25, 0.20, 0.30>] [0.75 rgb <0.03, 0.05, 0.13>] [1 rgb <0.01, 0.015, 0.05>] }
+    color_map {
+      [0.25 rgb <0.02, 0.02, 0.05>] [0.44 rgb <0.18, 0.12, 0.16>] [0.5 rgb <0.65, 0.34, 0.20>]
+      [0.56 rgb <0.25, 0.20, 0.30>] [0.75 rgb <0.03, 0.05, 0.13>] [1 rgb <0.01, 0.015, 0.05>]
+    }
     scale 2 translate -y
   }
 }

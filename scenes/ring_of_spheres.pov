@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Ring of spheres: twelve round the hole. Those behind it are seen over its top, and a second time below it, thin and upside down.
+// Ring of spheres: twelve round the hole. The one behind it is seen over its top, and a second time below it, thin.
 //   ./render scenes/ring_of_spheres.pov
-//   ./render scenes/ring_of_spheres.pov Declare=Height=7   from higher up
+//   ./render scenes/ring_of_spheres.pov Declare=Height=5   from higher up
 //   ./render scenes/ring_of_spheres.pov Blackhole=off      the spheres where they stand
 #version 3.7;
 global_settings { assumed_gamma 1.0  max_trace_level 8 }
@@ -19,7 +19,8 @@ light_source { <-40, 50, -20> rgb <1.45, 1.30, 1.08> area_light 10*x, 10*y, 4, 4
 light_source { <40, 20, 30> rgb <0.20, 0.32, 0.60> shadowless }
 
 #macro Hue (H)   // once round the colour wheel as H goes from 0 to 1
-  rgb <pow(0.5 + 0.5*cos(2*pi*H), 1.6), 0.75*pow(0.5 + 0.5*cos(2*pi*(H - 1/3)), 1.6), pow(0.5 + 0.5*cos(2*pi*(H - 2/3)), 1.6)> + 0.02
+  #local A = 2*pi*<H, H - 1/3, H - 2/3>;
+  rgb <pow(0.5 + 0.5*cos(A.x), 1.6), 0.75*pow(0.5 + 0.5*cos(A.y), 1.6), pow(0.5 + 0.5*cos(A.z), 1.6)> + 0.02
 #end
 #for (I, 0, 11)
   sphere {
@@ -42,7 +43,10 @@ disc {
 sky_sphere {
   pigment {
     gradient y
-    color_map { [0 rgb <0.002, 0.003, 0.008>] [0.42 rgb <0.020, 0.022, 0.050>] [0.5 rgb <0.10, 0.075, 0.11>] [0.58 rgb <0.020, 0.022, 0.050>] [1 rgb <0.002, 0.003, 0.008>] }
+    color_map {
+      [0 rgb <0.002, 0.003, 0.008>] [0.42 rgb <0.020, 0.022, 0.050>] [0.5 rgb <0.10, 0.075, 0.11>]
+      [0.58 rgb <0.020, 0.022, 0.050>] [1 rgb <0.002, 0.003, 0.008>]
+    }
     scale 2 translate -y
   }
   pigment {

@@ -39,11 +39,16 @@ std::string joined(const std::string& text) {
 } // namespace
 
 TEST(Report, SaysWhatTheSceneRequires) {
-	EXPECT_NE(povray(camera + "blackhole { 0, 1 }", 16, 12).text.find("only the sky remains"), std::string::npos);
+	EXPECT_NE(joined(povray(camera + "blackhole { 0, 1 }", 16, 12).text).find("only the sky remains"), std::string::npos);
 	const Rendering run = povray(camera + objects + "sphere { <0, 0, 500>, 1 } blackhole { 0, 1 effect_radius 20 }", 16, 12);
 	EXPECT_NE(joined(run.text).find("3 of 4 objects within reach (1 plane, 2 sphere)"), std::string::npos) << run.text;
 	const Rendering straddles = povray(camera + "sphere { <0, 1, 0>, 0.5 pigment { rgb 1 } } blackhole { 0, 1 }", 16, 12);
-	EXPECT_NE(joined(straddles.text).find("may reach into the horizon"), std::string::npos) << straddles.text;
+	EXPECT_NE(joined(straddles.text).find("1 object(s) reach into the horizon"), std::string::npos) << straddles.text;
+	// A ring around the hole does not, though its bounding box does; and a light is no object to hit.
+	const Rendering ring =
+		povray(camera + "disc { <0, -0.5, 0>, y, 6, 3 pigment { rgb 1 } } light_source { 0.5, 1 } blackhole { 0, 1 }", 16, 12);
+	EXPECT_EQ(ring.text.find("reach into"), std::string::npos) << ring.text;
+	EXPECT_NE(joined(ring.text).find("1 of 1 objects within reach (1 disc)"), std::string::npos) << ring.text;
 }
 
 TEST(Report, Statistics) {

@@ -149,6 +149,7 @@ bool Bent_Path::Find_Intersection(Intersection& isect, const RayObjectCondition&
 	{
 		s.captured = true;
 		isect.Depth = 0.0;
+		bent->counts.Entered++;
 		bent->counts.Captured++;
 		return End_With("horizon", false);
 	}

@@ -19,7 +19,7 @@ Blackhole::Blackhole() :
 	ObjectBase(BASIC_OBJECT),
 	Radius(1.0),
 	Effect_Radius(0.0),
-	Tolerance(1e-3),
+	Tolerance(5e-4), // chords then keep within 2.5e-4 of the path: under half a pixel of 1920 across 60 degrees
 	Method(blackhole::Method::rk4),
 	Camera(STATIC_CAMERA),
 	Distorted(false),

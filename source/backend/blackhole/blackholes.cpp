@@ -14,7 +14,10 @@
 #include "backend/frame.h"
 #include "backend/bounding/bbox.h"
 #include "backend/control/messagefactory.h"
+#include "backend/lighting/point.h"
 #include "backend/math/vector.h"
+#include "backend/render/ray.h"
+#include "backend/scene/objects.h"
 #include "backend/scene/scene.h"
 #include "backend/shape/planes.h"
 #include "backend/blackhole/blackholes.h"
@@ -147,6 +150,40 @@ static std::string Object_Name(const ObjectBase& object)
 	return text;
 }
 
+// Whether a ray can hit it at all: light sources are objects too, but only what they look like is seen.
+static bool Visible(const ObjectBase& object)
+{
+	const LightSource *light = dynamic_cast<const LightSource *>(&object);
+	return (light == NULL) || !light->children.empty();
+}
+
+// Whether some of the object's surface is inside the horizon: tried with chords across it, since a bounding box says little
+// of a ring around the hole.
+static bool Pierces_Horizon(ObjectPtr object, const Blackhole& hole, TraceThreadData *thread)
+{
+	const int points = 256;
+	for(int i = 0; i < points; i++)
+	{
+		blackhole::Vec3 ends[2];
+		for(int k = 0; k < 2; k++)
+		{
+			// a spiral from pole to pole, each point with one far along it
+			const int n = (i + 97 * k) % points;
+			const DBL z = 1.0 - (2.0 * n + 1.0) / points, a = 2.399963 * n;
+			const blackhole::Vec3 p = { sqrt(1.0 - z * z) * cos(a), sqrt(1.0 - z * z) * sin(a), z };
+			ends[k] = p;
+		}
+		const blackhole::Vec3 along = ends[1] - ends[0];
+		Ray ray(Ray::OtherRay);
+		hole.To_Scene(ends[0], ray.Origin);
+		Assign_Vec3(ray.Direction, unit(along));
+		Intersection isect;
+		if(Find_Intersection(&isect, object, ray, thread) && (isect.Depth <= length(along) * hole.Radius))
+			return true;
+	}
+	return false;
+}
+
 // "sphere", "csgunion": an object's kind, by its class; good enough for a message.
 static std::string Kind(const ObjectBase& object)
 {
@@ -172,7 +209,7 @@ static std::string Listed(const std::map<std::string, unsigned int>& kinds)
 	return list.empty() ? list : " (" + list + ")";
 }
 
-std::string Blackholes::Prepare(const SceneData& scene, MessageFactory& messages)
+std::string Blackholes::Prepare(const SceneData& scene, TraceThreadData *thread, MessageFactory& messages)
 {
 	std::string report;
 	char text[512];
@@ -180,11 +217,14 @@ std::string Blackholes::Prepare(const SceneData& scene, MessageFactory& messages
 	for(size_t h = 0; h < holes.size(); h++)
 	{
 		const Blackhole& hole = *holes[h];
-		unsigned int reached = 0, straddling = 0;
+		unsigned int visible = 0, reached = 0, straddling = 0;
 		std::string first;
 		std::map<std::string, unsigned int> kinds;
 		for(size_t i = 0; i < scene.objects.size(); i++)
 		{
+			if(!Visible(*scene.objects[i]))
+				continue;
+			visible++;
 			DBL nearest, farthest;
 			Radii(*scene.objects[i], hole, nearest, farthest);
 			if(nearest * hole.Radius >= hole.Reach())
@@ -192,17 +232,17 @@ std::string Blackholes::Prepare(const SceneData& scene, MessageFactory& messages
 			reached++;
 			kinds[Kind(*scene.objects[i])]++;
 			shells[h].Add(nearest, farthest);
-			if((nearest <= 1.0) && (farthest > 1.0) && (straddling++ == 0))
+			if((nearest <= 1.0) && Pierces_Horizon(scene.objects[i], hole, thread) && (straddling++ == 0))
 				first = Object_Name(*scene.objects[i]);
 		}
 		shells[h].Merge();
 		snprintf(text, sizeof text, "Black hole at <%g,%g,%g>: Rs %g, effect radius %g, tolerance %g, method %s; %s%u of %u objects within reach",
 		         hole.Center[X], hole.Center[Y], hole.Center[Z], hole.Radius, hole.Reach(), hole.Tolerance,
 		         blackhole::method_names[int(hole.Method)],
-		         reached == 0 ? "only the sky remains: " : "", reached, (unsigned int)scene.objects.size());
+		         reached == 0 ? "only the sky remains: " : "", reached, visible);
 		report += text + Listed(kinds) + (reached == 0 ? ", rays need no chords.\n" : ".\n");
 		if(straddling > 0)
-			messages.Warning(1, "%u object(s) may reach into the horizon of the black hole at <%g,%g,%g> and exist outside it only; first: %s.",
+			messages.Warning(1, "%u object(s) reach into the horizon of the black hole at <%g,%g,%g> and exist outside it only; first: %s.",
 			                 straddling, hole.Center[X], hole.Center[Y], hole.Center[Z], first.c_str());
 	}
 	return report;

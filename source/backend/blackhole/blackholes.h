@@ -19,6 +19,7 @@ namespace pov
 class MessageFactory;
 class Ray_Paths;
 class SceneData;
+class TraceThreadData;
 
 /// One thread's counts, summed when the picture is done.
 struct Blackhole_Counts
@@ -63,7 +64,7 @@ class Blackholes
 
 		/// After parsing: finds what is within reach, says so, and warns of what straddles the horizon.
 		/// Returns the message's text.
-		std::string Prepare(const SceneData& scene, MessageFactory& messages);
+		std::string Prepare(const SceneData& scene, TraceThreadData *thread, MessageFactory& messages);
 		const Shells& Shells_Of(size_t hole) const { return shells[hole]; }
 
 		/// The hole in whose effect sphere the point lies, or NULL.

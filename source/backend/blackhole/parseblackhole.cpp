@@ -253,7 +253,7 @@ void Parser::Finish_Blackholes()
 			messageFactory.ErrorAt(POV_EXCEPTION(kParseErr, problem), hole.File.c_str(), hole.Line, 0, 0,
 			                       "Black hole at <%g,%g,%g>: %s.", hole.Center[X], hole.Center[Y], hole.Center[Z], problem.c_str());
 	}
-	const string report = holes.Prepare(*sceneData, messageFactory);
+	const string report = holes.Prepare(*sceneData, GetParserDataPtr(), messageFactory);
 	if(!report.empty())
 	{
 		Debug_Message_Buffer.printf("%s", report.c_str());
