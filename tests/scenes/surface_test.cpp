@@ -192,3 +192,23 @@ TEST(Light, IsStraightAndBlockedByTheHorizon) {
 	EXPECT_GT(dark, 20);
 	EXPECT_EQ(wrong, 0);
 }
+
+// A hole between a light and a lens: the caustic is gone, as the light itself is.
+TEST(Light, PhotonsEndInTheHorizon) {
+	const std::string scene =
+		Camera({0, -1, -8}, {0, -1.6, 8}, 0.02, 20, 10).text() +
+		"global_settings { photons { count 4000 } } light_source { <0, 20, 0> rgb 1 } "
+		"sphere { 0, 1 pigment { rgbt 1 } finish { ambient 0 diffuse 0 } interior { ior 1.5 } "
+		"photons { target refraction on } } plane { y, -3 pigment { rgb 1 } finish { ambient 0 diffuse 1 } } ";
+	const Rendering without = povray(scene, 20, 10),
+					with = povray(scene + "blackhole { <0, 10, 0>, 1 effect_radius 1.6 }", 20, 10);
+	ASSERT_FALSE(without.picture.samples.empty()) << without.text;
+	ASSERT_FALSE(with.picture.samples.empty()) << with.text;
+	double brightest = 0, in_shadow = 0;
+	for (int x = 8; x < 12; x++) {
+		brightest = std::max(brightest, without.picture.at(x, 5, 0));
+		in_shadow = std::max(in_shadow, with.picture.at(x, 5, 0));
+	}
+	EXPECT_GT(brightest, 0.5);
+	EXPECT_EQ(in_shadow, 0);
+}
