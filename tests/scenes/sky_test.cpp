@@ -114,6 +114,27 @@ TEST_P(Sky, CoordinateCamera) {
 
 INSTANTIATE_TEST_SUITE_P(Tolerance, Sky, testing::Values(1e-2, 1e-3, 1e-4, 1e-5, 1e-6));
 
+// The picture of a hole does not depend on its size, as long as the scene has that size too; nor on chords being made.
+TEST(Sky, IsTheSameAtEverySize) {
+	const std::string sky = "sky_sphere { pigment { checker rgb 0.2 rgb 1 scale 0.3 } } ";
+	Rendering first;
+	for (double size : {1.0, 1e-9, 1e-4, 1e6, 1e9}) {
+		const Camera camera({0, 3 * size, -20 * size}, {0, -0.1, 1}, 0.02, 32, 24);
+		// Fog so thin that it cannot be seen: it makes chords where the sky alone needs none.
+		for (const char* fog : {"", "fog { distance 1e300 rgb 0 } "}) {
+			const Rendering run = povray(camera.text() + sky + fog + "blackhole { 0, " + number(size) + " }", 32, 24);
+			ASSERT_FALSE(run.picture.samples.empty()) << run.text;
+			if (first.picture.samples.empty())
+				first = run;
+			int different = 0;
+			for (std::size_t i = 0; i < run.picture.samples.size(); i++)
+				different += run.picture.samples[i] != first.picture.samples[i];
+			// A pixel on a checker's edge may fall to the other side by a rounding.
+			EXPECT_LE(different, 3) << "size " << size << fog;
+		}
+	}
+}
+
 // The shadow's half-angle in a picture, to a hundredth of a pixel of 0.02 degrees: the black disc's area.
 TEST(Shadow, HasTheHalfAngleOfTheFormula) {
 	const struct { double r, degrees; } cases[] = {{10, 14.276}, {3, 45.0143}};

@@ -112,8 +112,6 @@ bool Bent_Path::Straight(const VECTOR from, const Vec3& direction, DBL length, I
 		Record(from, to, NO_HOLE, true);
 	}
 	s.moved = true;
-	if(!found && (length < s.budget - s.travelled))
-		Pass(from, direction, length);
 	return found;
 }
 

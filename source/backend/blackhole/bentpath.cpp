@@ -144,7 +144,7 @@ bool Bent_Path::Find_Intersection(Intersection& isect, const RayObjectCondition&
 	Bent_Segment& s = *state;
 	VECTOR at;
 	Vec3 direction;
-	s.budget = isect.Depth;
+	s.budget = isect.Depth < BOUND_HUGE ? isect.Depth : HUGE_VAL;
 	if(!Enter(at, direction))
 	{
 		s.captured = true;
@@ -162,10 +162,11 @@ bool Bent_Path::Find_Intersection(Intersection& isect, const RayObjectCondition&
 		if((next == NO_HOLE) || (distance > 0.0))
 		{
 			const bool last = (next == NO_HOLE) || (distance >= remains);
-			if(Straight(at, direction, last ? remains : distance, isect, pre, post))
+			if(Straight(at, direction, last ? min(remains, BOUND_HUGE) : distance, isect, pre, post))
 				return End_With("object", true);
 			if(last)
 				return End_With(s.budget < BOUND_HUGE ? "max distance" : "sky", false);
+			Pass(at, direction, distance);
 			VEvaluateRay(at, at, distance, s.chord.Direction);
 		}
 		if(Through(next, at, direction, isect, pre, post))

@@ -37,7 +37,7 @@ struct Bent_Segment
 	bool captured;
 	bool volume;             ///< fog or media: spans are kept
 	bool moved;              ///< no longer on the ray's first chord
-	DBL budget;              ///< the farthest the ray may go
+	DBL budget;              ///< the farthest the ray may go; infinite unless the caller limits it
 	DBL travelled;           ///< length of the chords before the one in hand
 	std::vector<Span> spans;
 	size_t record;           ///< index in the recorder, if there is one
