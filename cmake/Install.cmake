@@ -12,7 +12,7 @@ install(CODE "
 	if(NOT CMAKE_INSTALL_PREFIX STREQUAL \"${CMAKE_INSTALL_PREFIX}\")
 		message(WARNING \"This povray looks for its includes below ${CMAKE_INSTALL_PREFIX}, not below \${CMAKE_INSTALL_PREFIX}: configure with -DCMAKE_INSTALL_PREFIX=\${CMAKE_INSTALL_PREFIX} and build again\")
 	endif()
-	set(ours \"\$ENV{DESTDIR}${CMAKE_INSTALL_FULL_BINDIR}/povray\")
+		set(ours \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_BINDIR}/povray\")
 	find_program(other povray NO_CACHE)
 	if(other AND NOT other STREQUAL ours)
 		message(WARNING \"There is another povray, \${other}: which of the two a shell finds depends on its PATH; this one is \${ours}\")

@@ -24,3 +24,4 @@ foreach(d ${folders})
 		file(REMOVE_RECURSE "$ENV{DESTDIR}${d}")
 	endif()
 endforeach()
+file(REMOVE ${MANIFEST}) # a second time there is nothing to remove

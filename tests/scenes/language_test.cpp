@@ -80,6 +80,8 @@ INSTANTIATE_TEST_SUITE_P(Language, Refused,
 			3},
 		Bad{"blackhole { <0, 0, -21>, 1 camera \"coordinate\" }", "at or inside the horizon, where no coordinate observer can be",
 			3},
+		Bad{"union { blackhole { 0, 1 } sphere { 0, 3 } clipped_by { plane { y, 0 } } }", "cannot be part of what is clipped", 3},
+		Bad{"camera { location <1e200, 0, 0> } blackhole { 0, 1 }", "the camera's location is not a point", 3},
 		Bad{"blackhole { 0 }", "Expected", 3}, Bad{"blackhole { 0, 1", "End of File found instead", 3}));
 
 namespace {

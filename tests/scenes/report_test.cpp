@@ -165,7 +165,7 @@ TEST(Ray_Paths, VrmlAndBadOptions) {
 		EXPECT_NE(joined(r.text).find(b.says), std::string::npos) << b.words << "\n" << r.text;
 	}
 	const Rendering nowhere = povray(camera + "blackhole { 0, 1 }", 8, 6, "Ray_Paths=no/such/folder/p.csv");
-	EXPECT_FALSE(nowhere.picture.samples.empty()) << "the picture is not lost";
+	EXPECT_NE(nowhere.exit_code, 0) << "said before the picture is rendered, not after";
 	EXPECT_NE(joined(nowhere.text).find("cannot write there"), std::string::npos) << nowhere.text;
 }
 
@@ -173,4 +173,39 @@ TEST(Ray_Paths, DoNotChangeThePicture) {
 	const Rendering with = povray(camera + objects + "blackhole { 0, 1 }", 32, 24, "Ray_Paths=p.csv"),
 					without = povray(camera + objects + "blackhole { 0, 1 }", 32, 24);
 	EXPECT_TRUE(with.picture == without.picture);
+}
+
+// Every sampling method has a first sample in each pixel.
+TEST(Ray_Paths, AreKeptWithAntialiasing) {
+	for (const char* method : {"+A0.1 +AM1", "+A0.1 +AM2"}) {
+		const Rendering run =
+			povray(camera + objects + "blackhole { 0, 1 }", 32, 24, std::string(method) + " Ray_Paths=p.csv Ray_Paths_Grid=4x3");
+		std::ifstream in(run.folder + "/p.csv");
+		std::string line;
+		int first = 0;
+		while (std::getline(in, line))
+			first += line.find(",0,1,0,") != std::string::npos; // ray 0, level 1, chord 0
+		EXPECT_EQ(first, 12) << method;
+	}
+}
+
+// Nothing at r <= Rs is hit: a surface exactly there is not seen, not even as a speck.
+TEST(Pictures, AnObjectAtTheHorizonIsNotSeen) {
+	const Rendering run = povray(camera + "sphere { 0, 1 pigment { rgb y } finish { ambient 1 } } blackhole { 0, 1 }", 160, 120);
+	ASSERT_FALSE(run.picture.samples.empty()) << run.text;
+	for (int y = 0; y < 120; y++)
+		for (int x = 0; x < 160; x++)
+			ASSERT_EQ(run.picture.at(x, y, 1), 0) << x << " " << y;
+}
+
+// What fog does to a captured ray is one number over the whole disc: to within what its length differs.
+TEST(Pictures, FogIsInFrontOfTheHorizonOnce) {
+	const Rendering run = povray(
+		"camera { location -15*z look_at 0 angle 50 } blackhole { 0, 1 tolerance 0.1 } fog { distance 30 rgb 0.5 }", 80, 60);
+	ASSERT_FALSE(run.picture.samples.empty()) << run.text;
+	EXPECT_NEAR(run.picture.at(40, 30, 0), 0.5 * (1 - std::exp(-14.0 / 30)), 0.003);
+	EXPECT_NEAR(run.picture.at(43, 30, 0), run.picture.at(40, 30, 0), 0.005);
+	const Rendering inside = povray(
+		"camera { location -0.5*z look_at 0 angle 50 } blackhole { 0, 1 camera \"falling\" } fog { distance 30 rgb 0.5 }", 8, 6);
+	EXPECT_TRUE(inside.picture.black(4, 3)) << "nothing was ever sent along that ray";
 }

@@ -36,6 +36,9 @@ static DBL Least_Depth(bool moved, DBL travelled, DBL length)
 	return max(BACK_UP - overlap, BACK_UP + MIN_ISECT_DEPTH - travelled);
 }
 
+// A surface exactly at the horizon is not outside it; intersections are good to far less than this part of its radius.
+static const DBL HORIZON = 1e-6;
+
 // Keeps what POV-Ray keeps, beyond the joint and outside the horizon.
 struct Chord_Condition : public RayObjectCondition
 {
@@ -48,7 +51,7 @@ struct Chord_Condition : public RayObjectCondition
 		{
 			VECTOR p;
 			VEvaluateRay(p, ray.Origin, depth, ray.Direction);
-			if(hole->Distance(p) <= hole->Radius)
+			if(hole->Distance(p) <= hole->Radius * (1.0 + HORIZON))
 				return false;
 		}
 		return condition(ray, object, depth);
@@ -159,7 +162,7 @@ bool Bent_Path::Through(size_t index, VECTOR from, Vec3& direction, Intersection
 			s.chords++;
 			const bool test = shells.Overlap(c.nearest, c.farthest);
 			(test ? counts.Tested : counts.Skipped)++;
-			const bool near_horizon = (c.nearest <= 1.0 + 1e-9) || ((c.nearest - 1.0) * hole.Radius < BACK_UP);
+			const bool near_horizon = (c.nearest <= 1.0 + 2.0 * HORIZON) || ((c.nearest - 1.0) * hole.Radius < BACK_UP);
 			const bool found = test && Search(start, along, min(chord_length, remains), near_horizon ? &hole : NULL, isect, pre, post);
 			s.moved = true;
 			Record(start, found ? isect.IPoint : end, index, test);

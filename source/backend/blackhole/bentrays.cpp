@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include <cmath>
+
 // frame.h must always be the first POV file included (pulls in platform config)
 #include "backend/frame.h"
 #include "backend/math/vector.h"
@@ -39,8 +41,8 @@ void Bent_Rays::Begin(DBL x, DBL y, DBL width, DBL height)
 	if((holes.Paths() == NULL) || !holes.Paths()->Wants(x, y, width, height))
 		return;
 	recorder = new Recorder();
-	recorder->x = int(x);
-	recorder->y = int(y);
+	recorder->x = int(floor(x));
+	recorder->y = int(floor(y));
 }
 
 void Bent_Rays::End()

@@ -20,6 +20,7 @@
 #include "backend/scene/objects.h"
 #include "backend/scene/scene.h"
 #include "backend/shape/planes.h"
+#include "backend/shape/spheres.h"
 #include "backend/blackhole/blackholes.h"
 #include "backend/blackhole/options.h"
 #include "backend/blackhole/raypaths.h"
@@ -117,29 +118,34 @@ bool Blackholes::Active() const
 // The nearest and farthest an object's bounding box comes to the hole's centre, in Schwarzschild radii.
 static void Radii(const ObjectBase& object, const Blackhole& hole, DBL& nearest, DBL& farthest)
 {
-	DBL volume;
-	BOUNDS_VOLUME(volume, object.BBox);
-	nearest = 0.0;
-	farthest = std::numeric_limits<DBL>::infinity();
-	if(volume > BOUND_HUGE)
+	// A plane keeps its distance, and a sphere is where its surface is; of all else the box is known.
+	const Plane *plane = dynamic_cast<const Plane *>(&object);
+	if((plane != NULL) && (plane->Trans == NULL))
 	{
-		// An infinite object may be anywhere; a plane keeps its distance.
-		const Plane *plane = dynamic_cast<const Plane *>(&object);
-		if((plane != NULL) && (plane->Trans == NULL))
-			nearest = fabs(dot(Vec3_Of(plane->Normal_Vector), Vec3_Of(hole.Center)) + plane->Distance) / hole.Radius;
+		nearest = fabs(dot(Vec3_Of(plane->Normal_Vector), Vec3_Of(hole.Center)) + plane->Distance) / hole.Radius * (1.0 - 1e-9);
+		farthest = std::numeric_limits<DBL>::infinity();
 		return;
 	}
-	DBL near2 = 0.0, far2 = 0.0;
+	const Sphere *sphere = dynamic_cast<const Sphere *>(&object);
+	if((sphere != NULL) && (sphere->Trans == NULL))
+	{
+		const DBL distance = hole.Distance(sphere->Center);
+		nearest = fabs(distance - sphere->Radius) / hole.Radius - 1e-9 * (distance + sphere->Radius) / hole.Radius;
+		farthest = (distance + sphere->Radius) / hole.Radius * (1.0 + 1e-9);
+		return;
+	}
+	DBL near2 = 0.0, far2 = 0.0, size = 0.0;
 	for(int i = X; i <= Z; i++)
 	{
 		const DBL lo = object.BBox.Lower_Left[i] - hole.Center[i], hi = lo + object.BBox.Lengths[i];
 		const DBL n = lo > 0.0 ? lo : (hi < 0.0 ? -hi : 0.0), f = max(fabs(lo), fabs(hi));
 		near2 += n * n;
 		far2 += f * f;
+		size = max(size, f + fabs(hole.Center[i]));
 	}
 	// bounding boxes are in single precision
-	nearest = sqrt(near2) / hole.Radius * (1.0 - 1e-5);
-	farthest = sqrt(far2) / hole.Radius * (1.0 + 1e-5);
+	nearest = max(0.0, sqrt(near2) - 1e-6 * size) / hole.Radius;
+	farthest = (sqrt(far2) + 1e-6 * size) / hole.Radius;
 }
 
 static std::string Object_Name(const ObjectBase& object)
@@ -241,6 +247,9 @@ std::string Blackholes::Prepare(const SceneData& scene, TraceThreadData *thread,
 		         blackhole::method_names[int(hole.Method)],
 		         reached == 0 ? "only the sky remains: " : "", reached, visible);
 		report += text + Listed(kinds) + (reached == 0 ? ", rays need no chords.\n" : ".\n");
+		// POV-Ray's own constants, MIN_ISECT_DEPTH and MAX_DISTANCE, are lengths: 1e-4 and 1e7.
+		if((reached > 0) && ((hole.Radius < 1e-3) || (hole.Radius > 1e5)))
+			messages.Warning(1, "POV-Ray loses objects nearer than 1e-4 and farther than 1e7 units; around a black hole with a Schwarzschild radius of %g that shows. Scale the scene so that it is between 1e-3 and 1e5.", hole.Radius);
 		if(straddling > 0)
 			messages.Warning(1, "%u object(s) reach into the horizon of the black hole at <%g,%g,%g> and exist outside it only; first: %s.",
 			                 straddling, hole.Center[X], hole.Center[Y], hole.Center[Z], first.c_str());

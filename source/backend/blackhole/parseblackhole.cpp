@@ -219,6 +219,8 @@ bool Parser::Link_Blackholes(ObjectPtr object)
 	if((csg == NULL) || (dynamic_cast<CSGIntersection *>(object) != NULL))
 		return false;
 	bool found = false;
+	if(!csg->Clip.empty())
+		Check_No_Blackhole(csg, "what is clipped");
 	for(size_t i = 0; i < csg->children.size(); )
 	{
 		if(Link_Blackholes(csg->children[i]))
@@ -244,7 +246,9 @@ void Parser::Finish_Blackholes()
 		const Blackhole& hole = *holes.Holes()[i];
 		const DBL r = hole.Distance(sceneData->parsedCamera.Location);
 		string problem;
-		if(r == 0.0)
+		if(!(r < 1e30))
+			problem = "the camera's location is not a point; look for a division by zero";
+		else if(r == 0.0)
 			problem = "the camera is at its centre, where nothing is; move the camera";
 		else if((r <= hole.Radius) && (hole.Camera != Blackhole::FALLING_CAMERA))
 			problem = string("the camera is at or inside the horizon, where no ") + (hole.Camera == Blackhole::STATIC_CAMERA ? "static" : "coordinate") +

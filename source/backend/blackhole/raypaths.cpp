@@ -40,14 +40,17 @@ Ray_Paths *Ray_Paths::Create(POVMS_Object& options)
 	   (paths->columns < 1) || (paths->rows < 1) || (paths->columns > 10000) || (paths->rows > 10000))
 		throw POV_EXCEPTION(kParamErr, "Ray_Paths_Grid=" + grid + ": must be rays across x rays down, as in 32x24");
 	paths->file = file;
+	// Now, not when the picture is done.
+	if(FILE *f = fopen(file.c_str(), "a"))
+		fclose(f);
+	else
+		throw POV_EXCEPTION(kParamErr, "Ray_Paths=" + file + ": cannot write there");
 	return paths.release();
 }
 
 // Grid cells' middles fall on these pixels.
 static bool On_Grid(DBL pixel, DBL size, int cells)
 {
-	if(pixel != floor(pixel))
-		return false;
 	if(cells >= size)
 		return true;
 	const DBL cell = floor(pixel * cells / size);
@@ -59,13 +62,15 @@ static bool On_Grid(DBL pixel, DBL size, int cells)
 
 bool Ray_Paths::Wants(DBL x, DBL y, DBL width, DBL height) const
 {
-	return On_Grid(x, width, columns) && On_Grid(y, height, rows);
+	return On_Grid(floor(x), width, columns) && On_Grid(floor(y), height, rows);
 }
 
 void Ray_Paths::Keep(int x, int y, Recorded_Pixel& pixel)
 {
 	boost::mutex::scoped_lock lock(mutex);
-	pixels[std::make_pair(y, x)].swap(pixel);
+	Recorded_Pixel& kept = pixels[std::make_pair(y, x)];
+	if(kept.empty())
+		kept.swap(pixel);
 }
 
 std::string Ray_Paths::Csv() const

@@ -43,9 +43,9 @@ class Ray_Paths
 		/// Reads `Ray_Paths` and `Ray_Paths_Grid`; NULL if no paths are wanted. Throws on an unknown ending or a bad grid.
 		static Ray_Paths *Create(POVMS_Object& options);
 
-		/// Whether the pixel at column x, row y of a picture of that size is one of the grid's.
+		/// Whether a sample at column x, row y of a picture of that size is in one of the grid's pixels.
 		bool Wants(DBL x, DBL y, DBL width, DBL height) const;
-		/// Keeps a pixel's rays; replaces what was kept of it before. Thread-safe.
+		/// Keeps a pixel's rays, those of its first sample. Thread-safe.
 		void Keep(int x, int y, Recorded_Pixel& pixel);
 		/// Writes the file. A file that cannot be written is one warning.
 		void Write(const Blackholes& holes, MessageFactory& messages);
