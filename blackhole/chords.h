@@ -26,8 +26,6 @@ public:
 	Chords(const Path& path, double tolerance, bool ramp);
 	/// The next chord; false after the last. Chords of a ray that starts inside the horizon begin where it emerges.
 	bool next(Chord& chord);
-	/// Whether next() was called as often as there are chords.
-	bool done() const { return ended_; }
 
 private:
 	double density(std::size_t node) const;

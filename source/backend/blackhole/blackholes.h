@@ -12,6 +12,7 @@
 #include "base/povms.h"
 #include "base/povmscpp.h"
 #include "backend/blackhole/blackhole.h"
+#include "backend/blackhole/reach.h"
 
 namespace pov
 {
@@ -24,26 +25,13 @@ class TraceThreadData;
 /// One thread's counts, summed when the picture is done.
 struct Blackhole_Counts
 {
-	POV_ULONG Rays, Entered, Captured, Chords, Tested, Skipped, Nudged, Failed, Origins_Inside;
+	POV_ULONG Entered, Captured, Chords, Tested, Skipped, Nudged, Failed, Origins_Inside;
 	unsigned int Most_Chords;
 	DBL Most_Swept; ///< radians
 	DBL Drift;
 
 	Blackhole_Counts();
 	void Add(const Blackhole_Counts& other);
-};
-
-/// The radii, in Schwarzschild radii, at which something of the scene may be hit around one hole.
-class Shells
-{
-	public:
-		void Add(DBL from, DBL to);
-		void Merge();
-		bool Empty() const { return shells.empty(); }
-		bool Overlap(DBL nearest, DBL farthest) const;
-		const std::vector<std::pair<DBL, DBL> >& List() const { return shells; }
-	private:
-		std::vector<std::pair<DBL, DBL> > shells;
 };
 
 class Blackholes
