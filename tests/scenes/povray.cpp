@@ -73,10 +73,11 @@ Rendering povray(const std::string& scene, int width, int height, const std::str
 	run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128;
 	std::ifstream out(run.folder + "/out");
 	run.text.assign(std::istreambuf_iterator<char>(out), std::istreambuf_iterator<char>());
-	// Less the banner, where there is more than that.
-	const std::size_t parsing = run.text.find("==== [Parsing");
-	if (parsing != std::string::npos)
-		run.text.erase(0, parsing);
+	// Less the banner, where there is more than that. (Not from "==== [Parsing...]" on: when parsing is quick,
+	// POV-Ray's console prints the first messages above that line.)
+	const std::size_t last_option = run.text.find("Warning Stream to console");
+	if (last_option != std::string::npos)
+		run.text.erase(0, run.text.find('\n', last_option) + 1);
 	run.picture = read_ppm(run.folder + "/scene.ppm");
 	return run;
 }
