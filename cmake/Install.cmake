@@ -5,7 +5,8 @@ install(TARGETS povray RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(DIRECTORY ${POVRAY_TREE}/distribution/include ${POVRAY_TREE}/distribution/ini
 	DESTINATION ${CMAKE_INSTALL_DATADIR}/povray-3.7)
 install(DIRECTORY scenes/ DESTINATION ${CMAKE_INSTALL_DATADIR}/povray-3.7/scenes/blackhole
-	FILES_MATCHING PATTERN "*.pov" PATTERN "*.ini" PATTERN "*.inc")
+	FILES_MATCHING PATTERN "*.pov" PATTERN "*.ini" PATTERN "include" EXCLUDE)
+install(DIRECTORY scenes/include DESTINATION ${CMAKE_INSTALL_DATADIR}/povray-3.7)
 install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/povray-blackhole)
 # povray has the path of its includes compiled in.
 install(CODE "

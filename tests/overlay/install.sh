@@ -19,10 +19,11 @@ tr -s '\n ' ' ' <"$work/out" | grep -q "There is another povray, $work/other/pov
 share=$(find "$work/to" -name colors.inc -printf '%h')
 [ -n "$share" ] || fail "no includes"
 [ -f "$share/../scenes/blackhole/first_light.pov" ] || fail "no scenes"
+[ -f "$share/blackhole.inc" ] || fail "blackhole.inc is not beside POV-Ray's own includes"
 mkdir -p "$work/home/.povray/3.7"
 printf 'Width=40\nHeight=30\nLibrary_Path="%s"\n' "$share" >"$work/home/.povray/3.7/povray.ini"
 cd "$work"
-printf '#version 3.7; #include "colors.inc" global_settings { assumed_gamma 1 } sphere { z, 0.5 pigment { Red } } blackhole { <3, 0, 5>, 1 }' >scene.pov
+printf '#version 3.7; #include "colors.inc"\n#include "blackhole.inc"\nglobal_settings { assumed_gamma 1 } sphere { z, 0.5 pigment { Red } } blackhole { <3, 0, 5>, 1 }' >scene.pov
 HOME=$work/home "$(find "$work/to" -name povray -type f -perm -1)" +Iscene.pov -D >out 2>&1 || fail "$(tail -3 out)"
 grep -q 'Image resolution.....40 by 30' out || fail "the user's povray.ini was not read"
 [ -f scene.png ] || fail "no picture"
