@@ -105,6 +105,11 @@ TEST(Include, GlobeHasItsRadius) {
 		EXPECT_FALSE(at(5.4));
 		EXPECT_FALSE(at(3.4));
 	}
+	for (int i = 0; i < 12; i++) { // along the meridians
+		const double c = std::cos(i * std::acos(0) / 3), s = std::sin(i * std::acos(0) / 3);
+		EXPECT_TRUE(lit(map, 1 + 3.4 * c, 3.4 * s)) << i;
+		EXPECT_FALSE(lit(map, 1 + 5.35 * c, 5.35 * s)) << i;
+	}
 }
 
 TEST(Include, DiscLiesBetweenItsRadii) {
