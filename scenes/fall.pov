@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Fall: from rest far away through the horizon, looking in, a little past the hole.
-//   ./render scenes/fall.ini                           the twelve frames
+//   ./render scenes/fall.ini                           the twenty-four frames
 //   ./render scenes/fall.pov Declare=R=1               one picture, at the horizon
 //   ./render scenes/fall.ini Blackhole=off             the same way without the hole
 #version 3.7;
 global_settings { assumed_gamma 1.0 }
-#include "functions.inc"
+#include "blackhole.inc"
 #ifndef (Tol) #declare Tol = 1e-3; #end
 
-// A body that falls from rest at infinity has a time proportional to r^1.5 left to the centre. From each frame to the next
-// that time shrinks by the same factor, so R shrinks by one too: 12 at clock 0, 0.3 at clock 1, the horizon after frame 8.
-#ifndef (R) #declare R = 12*pow(0.3/12, clock); #end
+// The clock is the falling camera's own watch: from 4 radii to the horizon it takes 4.67 of the time light takes for a radius, and from
+// there to the centre another 2/3, the film's last three frames.
+#ifndef (R) #declare Eye = Blackhole_Fall(1, 4, 0.15, clock); #else #declare Eye = -R*z; #end
 
 camera {
   ultra_wide_angle
-  location <0, 0, -R> up y right x*image_width/image_height angle 150
-  look_at <0, 0, -R> + vrotate(z, y*35)
+  location Eye up y right x*image_width/image_height angle 150
+  look_at Eye + vrotate(z, y*35)
 }
 
 #ifdef (Blackhole_Version)
@@ -27,7 +27,7 @@ blackhole { <0, 0, 0>, 1  tolerance Tol  camera "falling" }
 #default { finish { emission 1 ambient 0 diffuse 0 } }
 #for (I, 0, 3)
   #for (J, 0, 23)
-    sphere { <1.6, 0, 0>, 0.035 pigment { Lamp[I] } rotate z*15*J translate -8*pow(0.6, I)*z }
+    sphere { <1.6, 0, 0>, 0.035 pigment { Lamp[I] } rotate z*15*J translate -3.4*pow(0.7, I)*z }
   #end
 #end
 
