@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Back of one's head: at 1.5 Schwarzschild radii light circles, and who looks along the circle sees his own head from behind.
-// "Several times, also away from the horizon line", it was said in 1999. Confirmed, but thin: light that starts 1 mrad above the
-// circle is 0.23 radii above it after a turn. A head of 0.21 radii is 2.4 mrad tall, and e^(2 pi) = 535 times less with each further turn.
-// From elsewhere the images lie at the shadow's edge, all around it: from 3 radii, where the edge is 45 degrees from straight down, a head
-// that takes 17 degrees of the circle is seen from 4.8 to 6.5 mrad outside the edge.
+// "Several times, also away from the horizon line", it was said in 1999. Confirmed, but thin: light that starts 1 mrad above the circle is
+// 0.26 radii above it after a turn. So a head of 0.22 radii is 2.5 mrad tall, and e^(2 pi) = 535 times less with each further turn. From
+// elsewhere the images lie along the shadow's edge, on all sides: from 3 radii, where the edge is 45 degrees from straight down, a head
+// that takes 17 degrees of the circle reaches from 4.6 to 6.2 mrad outside it; from below 1.5 radii they lie inside it, on black.
 //   ./render scenes/back_of_head.pov +A0.1                     drawn 400 times as tall as wide
 //   ./render scenes/back_of_head.pov +A0.1 Declare=R=3         at 3: two degrees of the shadow's edge, forward, as it is
+//   ./render scenes/back_of_head.pov +A0.1 Declare=R=1.3       likewise, from below the circle of light
 //   ./render scenes/back_of_head.pov Blackhole=off             nothing: the head is behind the camera
 #version 3.7;
 global_settings { assumed_gamma 1.0 }
@@ -16,8 +17,9 @@ global_settings { assumed_gamma 1.0 }
 // The camera on the circle, and a head whose middle is a twenty-fifth of the circle behind it; it grows with R.
 #declare Eye = Blackhole_Photon_Circle(1, 0)*R/1.5;
 #declare Middle = Blackhole_Photon_Circle(1, -0.04*Blackhole_Photon_Period(1))*R/1.5;
-#declare Edge = asin(min(1, 1.5*sqrt(3*(1 - 1/R))/R));   // the shadow's, from straight down
-#declare Look = Edge + (R = 1.5 ? 0 : 0.004);
+#declare Edge = asin(min(1, 1.5*sqrt(3*(1 - 1/R))/R));
+#if (R < 1.5) #declare Edge = pi - Edge; #end            // the shadow's, from straight down
+#declare Look = Edge + 0.004*((R > 1.5) - (R < 1.5));
 #declare Wide = (R = 1.5 ? 3 : 0.035);
 #declare Tall = Wide*image_height/image_width/(R = 1.5 ? 400 : 1);
 #declare Ahead = <sin(Look), 0, cos(Look)>;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Whole surface: a globe round the hole, seen from 500 Schwarzschild radii. "From any point outside one sees all of its surface", it
-// was said in 1999. That holds for a small globe only. Light that grazes a globe of radius 1.7603 has gone half round when it leaves
-// for far away; from 500 the limit is 1.7586. Below it the far pole, red, is a ring at the rim, with more of the globe outside it;
-// above it the pole hides: of 1.85 one sees to 166.8 degrees from the middle, and a red cap of 12 degrees stays unseen.
+// was said in 1999. Corrected: of a small globe only. Light that grazes a globe of radius 1.7603 has gone just half round it when it
+// comes from far away; from 500 radii the limit is 1.7586. Below it the far pole, red, is drawn out to a ring at the rim; above it the
+// pole hides: of a globe of 1.70 one sees to 192.0 degrees from the middle, of one of 1.85 to 166.6, and a red cap of 12 stays unseen.
 //   ./render scenes/whole_surface.pov +A0.1                       radius 1.70: all of it
 //   ./render scenes/whole_surface.pov +A0.1 Declare=Radius=1.85   not all
 //   ./render scenes/whole_surface.pov +A0.1 Blackhole=off         one half

@@ -53,8 +53,9 @@ INSTANTIATE_TEST_SUITE_P(Include, Macro,
 		Wrong{"sky_sphere { Blackhole_Stars(200, 1, 5, 1) }", "Blackhole_Pixel: Angle must be below 180; it is 200.0000"},
 		Wrong{
 			"sky_sphere { Blackhole_Stars(60, -1, 5, 1) }", "Blackhole_Stars: Pixels must exceed nothing, 0.0000; it is -1.0000"},
-		Wrong{
-			"sky_sphere { Blackhole_Stars(60, 2, 5, 1) }", "Blackhole_Stars: stars of 2.0000 pixels overlap; Per_Radian must be"},
+		Wrong{"sky_sphere { Blackhole_Stars(60, 2, 0, 1) }",
+			"Blackhole_Stars: Per_Radian must exceed nothing, 0.0000; it is 0.0000"},
+		Wrong{"sky_sphere { Blackhole_Stars(60, 50, 5, 1) }", "Blackhole_Stars: a star of 50.0000 pixels is too large"},
 		Wrong{"#declare P = Blackhole_Fall(1, 3, 4, 0);", "Blackhole_Fall: R_Start must exceed R_End, 4.0000; it is 3.0000"},
 		Wrong{"#declare P = Blackhole_Fall(1, 3, -1, 0);", "Blackhole_Fall: R_End cannot be less than nothing; it is -1.0000"},
 		Wrong{"#declare P = Blackhole_Fall(1, 3, 1, 1.5);", "Blackhole_Fall: Clock must be from 0 to 1; it is 1.5000"},
