@@ -37,7 +37,13 @@ light_source { <-30, -25, -5> rgb <0.3, 0.4, 0.6> shadowless }
 #default { finish { ambient 0.06 diffuse 0.75 } }
 #declare Head = union {
   sphere { 0, 1 pigment { rgb <0.85, 0.55, 0.40> } }
-  intersection { sphere { 0, 1.05 } plane { x, 0.05 rotate z*-20 } pigment { bozo color_map { [0.2 rgb <0.07, 0.02, 0.005>] [0.8 rgb <0.24, 0.09, 0.025>] } turbulence 0.3 scale <0.6, 1.2, 0.06> } }
+  intersection {
+    sphere { 0, 1.05 }
+    plane { x, 0.05 rotate -z*20 }
+    pigment {
+      bozo color_map { [0.2 rgb <0.07, 0.02, 0.005>] [0.8 rgb <0.24, 0.09, 0.025>] } turbulence 0.3 scale <0.6, 1.2, 0.06>
+    }
+  }
   #for (I, -1, 1, 2)
     sphere { 0, 0.25 scale <0.5, 1, 0.6> translate <0.05, -0.05, 1.05*I> pigment { rgb <0.85, 0.5, 0.36> } }
     sphere { <0.93, 0.1, 0.33*I>, 0.12 pigment { rgb 0.03 } }
@@ -49,5 +55,12 @@ light_source { <-30, -25, -5> rgb <0.3, 0.4, 0.6> shadowless }
 object { Head scale 0.21*R/1.5 matrix <1, 0, 0, 0, 0, -1, 0, 1, 0, 0, 0, 0> rotate y*360*0.04 translate Middle }
 
 sky_sphere {
-  pigment { gradient y color_map { [0.2 rgb <0.01, 0.02, 0.08>] [0.42 rgb <0.03, 0.09, 0.25>] [0.5 rgb <0.12, 0.50, 0.60>] [0.58 rgb <0.03, 0.09, 0.25>] [0.8 rgb <0.01, 0.02, 0.08>] } scale 2 translate -y }
+  pigment {
+    gradient y
+    color_map {
+      [0.2 rgb <0.01, 0.02, 0.08>] [0.42 rgb <0.03, 0.09, 0.25>] [0.5 rgb <0.12, 0.50, 0.60>]
+      [0.58 rgb <0.03, 0.09, 0.25>] [0.8 rgb <0.01, 0.02, 0.08>]
+    }
+    scale 2 translate -y
+  }
 }

@@ -10,7 +10,8 @@ global_settings { assumed_gamma 1.0 }
 
 // The clock is the falling camera's own watch: from 4 radii to the horizon it takes 4.67 of the time light takes for a radius, and from
 // there to the centre another 2/3, the film's last three frames.
-#ifndef (R) #declare Eye = Blackhole_Fall(1, 4, 0.15, clock); #else #declare Eye = -R*z; #end
+#ifndef (R) #declare Eye = Blackhole_Fall(1, 4, 0.15, clock); #declare R = vlength(Eye); #else #declare Eye = -R*z; #end
+#if (R < 4) #debug concat("The watch shows ", str(Blackhole_Fall_Time(1, 4, R), 0, 3), " since 4 radii\n") #end
 
 camera {
   ultra_wide_angle

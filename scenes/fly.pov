@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Fly: a flight through a hall with a hole in the middle. The hall is at rest and so is the camera in each picture: the film is a walk from
-// one observer at rest to the next, and nothing of the speed is seen.
+// Fly: a flight through a hall with a hole in the middle. The hall is at rest and so is the camera in each picture: the film goes from one
+// observer at rest to the next, and nothing of the speed is seen.
 //   ./render scenes/fly.ini                      the twenty-four frames
 //   ./render scenes/fly.pov Declare=Clock=0.5    one picture, nearest to the hole
 //   ./render scenes/fly.ini Blackhole=off        the hall without the hole
@@ -28,12 +28,13 @@ light_source { <0, 6, 0> rgb 0.35 shadowless }
 
 // Floor and ceiling, four walls of different colours, each with a frieze.
 #macro Wall (Turn, Colour)
+  #local Bricks = pigment { brick rgb 0.45*Colour, rgb Colour brick_size <2.8, 1.1, 3> mortar 0.08 }
   box {
     <-14, -4, 14>, <14, 7, 14.5>
     pigment {
       gradient y
       pigment_map {
-        [0.04 rgb 0.08] [0.04 brick rgb 0.45*Colour, rgb Colour brick_size <2.8, 1.1, 3> mortar 0.08 scale 1/11] [0.86 brick rgb 0.45*Colour, rgb Colour brick_size <2.8, 1.1, 3> mortar 0.08 scale 1/11]
+        [0.04 rgb 0.08] [0.04 Bricks scale 1/11] [0.86 Bricks scale 1/11]
         [0.86 checker rgb <0.80, 0.60, 0.20>, rgb 0.05 scale 0.7/11]
       }
       scale 11 translate -4*y
@@ -42,7 +43,10 @@ light_source { <0, 6, 0> rgb 0.35 shadowless }
   }
 #end
 Wall(0, <0.45, 0.08, 0.05>) Wall(90, <0.05, 0.14, 0.38>) Wall(180, <0.50, 0.33, 0.08>) Wall(270, <0.06, 0.26, 0.10>)
-box { <-14, -4.5, -14>, <14, -4, 14> pigment { checker rgb <0.62, 0.58, 0.50>, rgb <0.07, 0.07, 0.09> scale 2 } finish { reflection 0.08 } }
+box {
+  <-14, -4.5, -14>, <14, -4, 14>
+  pigment { checker rgb <0.62, 0.58, 0.50>, rgb <0.07, 0.07, 0.09> scale 2 } finish { reflection 0.08 }
+}
 box { <-14, 7, -14>, <14, 7.5, 14> pigment { checker rgb <0.42, 0.33, 0.24>, rgb <0.30, 0.22, 0.15> scale 2 } }
 
 // Twelve pillars

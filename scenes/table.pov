@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Table: its top and its underside at once. It stands behind the hole, a little below the camera's height, so that without the hole
-// one sees the green top only. Light that passes over the hole shows the top, light that passes below it the red underside, with its four legs
-// coming down. Confirmed as it was said in 1999: with the hole both are seen, and each a second time, thin, at the shadow.
+// one sees the green top only. Light that passes over the hole shows the top, light that passes below it the red underside: as it was
+// said in 1999, confirmed.
 //   ./render scenes/table.pov +A0.1
 //   ./render scenes/table.pov +A0.1 Blackhole=off    the top only
 #version 3.7;

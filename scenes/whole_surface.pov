@@ -12,7 +12,7 @@ global_settings { assumed_gamma 1.0 }
 #ifndef (Tol) #declare Tol = 1e-3; #end
 #ifndef (Radius) #declare Radius = 1.70; #end
 
-camera { location <0, 0, -500> up y right x*image_width/image_height angle 0.9 look_at <0, 0, 0> }
+camera { location <0, 0, -500> up y right x*image_width/image_height angle 1.05 look_at <0, 0, 0> }
 
 #ifdef (Blackhole_Version)
 blackhole { <0, 0, 0>, 1  tolerance Tol }
@@ -37,4 +37,4 @@ sphere {
   scale Radius
 }
 
-sky_sphere { pigment { rgb <0.002, 0.003, 0.008> } Blackhole_Stars(0.9, 2, 700, 0.8) }
+sky_sphere { pigment { rgb <0.002, 0.003, 0.008> } Blackhole_Stars(1.05, 2, 700, 0.8) }

@@ -65,6 +65,9 @@ INSTANTIATE_TEST_SUITE_P(Include, Macro,
 		Wrong{"#declare P = Blackhole_Orbit_Period(1, 1);", "Blackhole_Orbit_Period: R must exceed 1.5 Rs, 1.5000; it is 1.0000"},
 		Wrong{"#declare P = Blackhole_Orbit_Period_Far(1, 1);",
 			"Blackhole_Orbit_Period_Far: R must exceed 1.5 Rs, 1.5000; it is 1.0000"},
+		Wrong{"#declare P = Blackhole_Photon_Circle(0, 1);",
+			"Blackhole_Photon_Circle: Rs must exceed nothing, 0.0000; it is 0.0000"},
+		Wrong{"#declare P = Blackhole_Orbit(-1, 3, 1);", "Blackhole_Orbit: Rs must exceed nothing, 0.0000; it is -1.0000"},
 		Wrong{"#declare P = Blackhole_Photon_Period(-1);",
 			"Blackhole_Photon_Period: Rs must exceed nothing, 0.0000; it is -1.0000"}));
 
