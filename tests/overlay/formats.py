@@ -9,55 +9,13 @@ float: 32-bit OpenEXR keeps what half does not, and is otherwise as the half fil
 import math
 import os
 import struct
-import subprocess
 import sys
-import tempfile
-from concurrent.futures import ThreadPoolExecutor
 
-import pictures
+import povray
+from povray import STOCK, expect, runs
 
-ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), "..", ".."))
-STOCK = ROOT + "/build/upstream/stock/usr/bin/povray"
 WIDTH, HEIGHT = 61, 47 # no multiple of anything: rows are padded, the last block is short
-HEAD = "#version 3.7; global_settings { assumed_gamma 1 }\n"
-failures = 0
-
-
-def expect(fine, *what):
-	global failures
-	if not fine:
-		failures += 1
-		print("WRONG:", *what)
-
-
-class Run:
-	"""One rendering: its exit code, what it said, and the picture, if any."""
-
-	def __init__(self, povray, scene, words):
-		with tempfile.TemporaryDirectory() as folder:
-			with open(folder + "/scene.pov", "w") as file:
-				file.write(HEAD + scene)
-			open(folder + "/none.ini", "w").close()
-			command = [povray, "+Iscene.pov", "-D", "+WT1", f"+W{WIDTH}", f"+H{HEIGHT}", *words.split()]
-			# No settings of the user's; a home that a restricted povray.conf lets be read.
-			env = {**os.environ, "HOME": folder, "POVINI": "none.ini"}
-			done = subprocess.run(command, cwd=folder, env=env, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-				stderr=subprocess.STDOUT, timeout=60)
-			self.code, self.text, self.picture = done.returncode, done.stdout.decode(errors="replace"), None
-			for name in os.listdir(folder):
-				if name not in ("scene.pov", "none.ini"):
-					self.picture = pictures.read(folder + "/" + name)
-
-
-def runs(jobs):
-	"""All of (povray, scene, words), four at a time: povray sleeps for most of a small picture."""
-	with ThreadPoolExecutor(4) as pool:
-		return list(pool.map(lambda job: Run(*job), jobs))
-
-
-def complaint(run):
-	"""The last word of a run that wrote nothing."""
-	return run.text.strip().splitlines()[-1]
+SIZE = f" -D +WT1 +W{WIDTH} +H{HEIGHT}"
 
 
 # Brighter than white, darker than a 16-bit step, see-through, and a sky that +UA leaves out.
@@ -81,16 +39,16 @@ WORDS = """
 """
 
 
-def stock(povray):
+def stock(program):
 	words = WORDS.strip().replace("\n", "|").split("|")
-	done = runs([(p, PLAIN, w) for w in words for p in (STOCK, povray)])
+	done = runs([(p, PLAIN, w + SIZE) for w in words for p in (STOCK, program)])
 	identical = refused = 0
 	for word, theirs, ours in zip(words, done[::2], done[1::2]):
 		expect(theirs.code == ours.code, word, "exits with", ours.code, "not", theirs.code)
 		if theirs.picture is None:
 			refused += 1
 			expect(ours.picture is None, word, "is refused by Debian's povray")
-			expect(complaint(ours) == complaint(theirs), word, "says", complaint(ours), "not", complaint(theirs))
+			expect(ours.last_word() == theirs.last_word(), word, "says", ours.last_word(), "not", theirs.last_word())
 		elif ours.picture is None or not ours.picture.same(theirs.picture):
 			expect(False, word, "differs from Debian's povray")
 		else:
@@ -122,14 +80,14 @@ def black(picture):
 	return {i for i, p in enumerate(picture.rgba()) if max(p[:3]) < 1e-30}
 
 
-def hole(povray):
+def hole(program):
 	words = ["+FE32", "+FE", "+FH", "+FP16", "+FN16", "+FN", "+FP", "+FB", "+FT", "+FC", "+FJ Compression=100"]
 	alpha = ["+FE32", "+FE", "+FN16", "+FN", "+FT", "+FC"]
-	done = runs([(povray, SKY + HOLE + BALL, w + " File_Gamma=1 -A") for w in words] +
-		[(povray, HOLE + BALL, w + " +UA File_Gamma=1 -A") for w in alpha] + [(povray, HOLE + BALL, "+FE32 +UA +A0.01 +R3")])
+	done = runs([(program, SKY + HOLE + BALL, w + " File_Gamma=1 -A" + SIZE) for w in words] +
+		[(program, HOLE + BALL, w + " +UA File_Gamma=1 -A" + SIZE) for w in alpha] + [(program, HOLE + BALL, "+FE32 +UA +A0.01 +R3" + SIZE)])
 	missing = [r for r in done if r.code or not r.picture]
 	if missing:
-		return expect(False, "no picture:", complaint(missing[0]))
+		return expect(False, "no picture:", missing[0].last_word())
 	got = [r.picture for r in done]
 	exact = got[0]
 	shadow = black(exact)
@@ -177,12 +135,12 @@ def half(value):
 		return math.inf
 
 
-def floats(povray):
+def floats(program):
 	flat = "camera { orthographic location -z * 5 right x * {n} up y direction z } ".replace("{n}", str(len(FIELDS))) + " ".join(
 		f"box {{ <{i - len(FIELDS) / 2}, -1, 0>, <{i + 1 - len(FIELDS) / 2}, 1, 1> pigment {{ rgb <{v}, {v / 2}, {v / 3}> }} finish {{ ambient 1 diffuse 0 }} }}"
 		for i, v in enumerate(FIELDS))
 	scenes = [flat, SKY + HOLE + BALL, PLAIN]
-	done = runs([(povray, s, w) for s in scenes for w in ("+FE32 +UA", "+FE16 +UA", "+FE32", "Output_File_Type=E Bits_Per_Color=32")])
+	done = runs([(program, s, w + SIZE) for s in scenes for w in ("+FE32 +UA", "+FE16 +UA", "+FE32", "Output_File_Type=E Bits_Per_Color=32")])
 	for scene in range(3):
 		full, rounded, opaque, spelt = (r.picture for r in done[4 * scene:4 * scene + 4])
 		expect((full.names, full.notes["kinds"]) == ("ABGR", "ffff"), "FLOAT channels A, B, G, R")
@@ -208,6 +166,6 @@ def floats(povray):
 if len(sys.argv) != 3 or sys.argv[1] not in ("stock", "hole", "float"):
 	sys.exit(__doc__)
 if sys.argv[1] == "stock":
-	subprocess.run([ROOT + "/tools/stock"], check=True)
+	povray.fetch_stock()
 {"stock": stock, "hole": hole, "float": floats}[sys.argv[1]](os.path.realpath(sys.argv[2]))
-sys.exit(failures > 0)
+sys.exit(povray.failures > 0)

@@ -178,7 +178,9 @@ def jpeg(data):
 	return ppm(decoded)
 
 
+READERS = {"png": png, "ppm": ppm, "bmp": bmp, "tga": targa, "hdr": hdr, "exr": exr, "jpg": jpeg}
+
+
 def read(path):
-	readers = {"png": png, "ppm": ppm, "bmp": bmp, "tga": targa, "hdr": hdr, "exr": exr, "jpg": jpeg}
 	with open(path, "rb") as file:
-		return readers[path.rsplit(".", 1)[1]](file.read())
+		return READERS[path.rsplit(".", 1)[1]](file.read())

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: AGPL-3.0-or-later
+"""Runs povray for the tests in Python, each run in a folder of its own."""
+import os
+import subprocess
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+
+import pictures
+
+ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), "..", ".."))
+STOCK = ROOT + "/build/upstream/stock/usr/bin/povray"
+HEAD = "#version 3.7; global_settings { assumed_gamma 1 }\n"
+failures = 0
+
+
+def expect(fine, *what):
+	global failures
+	if not fine:
+		failures += 1
+		print("WRONG:", *what)
+
+
+def fetch_stock():
+	subprocess.run([ROOT + "/tools/stock"], check=True)
+
+
+def start(povray, scene, words, folder, **more):
+	"""povray at work in the folder; what it says goes to the file out there."""
+	with open(folder + "/scene.pov", "w") as file:
+		file.write(HEAD + scene)
+	open(folder + "/none.ini", "w").close()
+	# No settings of the user's; a home that a restricted povray.conf lets be read.
+	env = {**os.environ, "HOME": folder, "POVINI": "none.ini", **more}
+	with open(folder + "/out", "w") as out:
+		return subprocess.Popen([povray, "+Iscene.pov", *words.split()], cwd=folder, env=env, stdin=subprocess.DEVNULL,
+			stdout=out, stderr=subprocess.STDOUT)
+
+
+def finish(process, seconds=60):
+	"""The exit code; 999 if it had to be killed."""
+	try:
+		return process.wait(seconds)
+	except subprocess.TimeoutExpired:
+		process.kill()
+		process.wait()
+		return 999
+
+
+def said(folder):
+	with open(folder + "/out", errors="replace") as file:
+		return file.read()
+
+
+def picture(folder):
+	"""What was written, or None."""
+	written = [f for f in os.listdir(folder) if f.rsplit(".", 1)[-1] in pictures.READERS]
+	return pictures.read(folder + "/" + written[0]) if written else None
+
+
+class Run:
+	"""One rendering from start to end: its exit code, what it said, and the picture, if any."""
+
+	def __init__(self, povray, scene, words):
+		with tempfile.TemporaryDirectory() as folder:
+			self.code = finish(start(povray, scene, words, folder))
+			self.text, self.picture = said(folder), picture(folder)
+
+	def last_word(self):
+		return self.text.strip().splitlines()[-1]
+
+
+def runs(jobs):
+	"""All of (povray, scene, words), four at a time: povray sleeps for most of a small picture."""
+	with ThreadPoolExecutor(4) as pool:
+		return list(pool.map(lambda job: Run(*job), jobs))
