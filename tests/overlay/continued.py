@@ -29,7 +29,7 @@ sky_sphere { pigment { granite scale 3 color_map { [0 rgb <0.02, 0.5, 1.6>] [1 r
 isosurface { function { f_slow(x, y, z) } contained_by { box { -9, <9, -3, 9> } } max_gradient 3 pigment { rgb 0.7 } }
 """
 # Each evaluation sums many sines.
-SLOW = "#declare f_slow = function { y + 3.5 + 0.1 * (" + " + ".join(f"sin({i} * x) * sin({i} * z) / {i}" for i in range(1, 25)) + ") }\n"
+SLOW = "#declare f_slow = function { y + 3.5 + 0.1 * (" + " + ".join(f"sin({i} * x) * sin({i} * z) / {i}" for i in range(1, 16)) + ") }\n"
 BLACKHOLE = "blackhole { 0, 1 tolerance 1e-4 }\n"
 
 

@@ -70,6 +70,6 @@ class Run:
 
 
 def runs(jobs):
-	"""All of (povray, scene, words), four at a time: povray sleeps for most of a small picture."""
-	with ThreadPoolExecutor(4) as pool:
+	"""All of (povray, scene, words), eight at a time: povray sleeps for most of a small picture."""
+	with ThreadPoolExecutor(8) as pool:
 		return list(pool.map(lambda job: Run(*job), jobs))
