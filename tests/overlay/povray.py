@@ -9,7 +9,7 @@ import pictures
 
 ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), "..", ".."))
 STOCK = ROOT + "/build/upstream/stock/usr/bin/povray"
-HEAD = "#version 3.7; global_settings { assumed_gamma 1 }\n"
+HEAD = "#version 3.7; global_settings { assumed_gamma 1 }\n" # before every scene that has none of its own
 failures = 0
 
 
@@ -27,7 +27,7 @@ def fetch_stock():
 def start(povray, scene, words, folder, **more):
 	"""povray at work in the folder; what it says goes to the file out there."""
 	with open(folder + "/scene.pov", "w") as file:
-		file.write(HEAD + scene)
+		file.write(scene if scene.startswith("#version") else HEAD + scene)
 	open(folder + "/none.ini", "w").close()
 	# No settings of the user's; a home that a restricted povray.conf lets be read.
 	env = {**os.environ, "HOME": folder, "POVINI": "none.ini", **more}
