@@ -113,6 +113,13 @@ bool Path::solve(const Vec3& x, const Vec3& d, const Settings& settings) {
 	return false;
 }
 
+double Path::length() const {
+	double sum = 0;
+	for (std::size_t i = 1; i < nodes_.size(); i++)
+		sum += blackhole::length(nodes_[i].p - nodes_[i - 1].p);
+	return sum;
+}
+
 double Path::swept() const {
 	const Vec2 p = nodes_.back().p;
 	double phi = std::atan2(p.y, p.x);

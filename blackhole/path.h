@@ -40,6 +40,8 @@ public:
 	Vec3 end() const { return orbit_.to_space(nodes_.back().p); }
 	Vec3 end_tangent() const { return unit(orbit_.to_space(nodes_.back().v)); }
 
+	/// Euclidean length, as the polyline through the nodes.
+	double length() const;
 	/// Angle swept around the hole's centre, radians, >= 0.
 	double swept() const;
 	/// The largest relative change of angular momentum, and of energy over the size of its terms, between start and end:

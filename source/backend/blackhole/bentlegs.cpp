@@ -22,18 +22,22 @@ namespace pov
 
 using blackhole::Vec3;
 
-// POV-Ray drops hits nearer than MIN_ISECT_DEPTH to a ray's start. Chords after the first start this much early ...
-static const DBL BACK_UP = 2.0 * MIN_ISECT_DEPTH;
+// POV-Ray drops hits nearer than MIN_ISECT_DEPTH to a ray's start, and some shapes drop more (Blind_Depth in reach.h).
+// Chords after the first therefore start early, by twice the most that any shape here is blind for, though not behind
+// the ray's own origin ...
+static DBL Back_Up(bool moved, DBL travelled, DBL blind)
+{
+	return moved ? min(2.0 * blind, 0.9 * travelled) : 0.0;
+}
 
 // ... and accept what lies beyond the joint, less a little so that rounding on both sides leaves no gap: the least depth
-// a hit may have, on a chord of this length. It also is as far from the ray's own origin as POV-Ray wants it: chords may
-// be shorter than MIN_ISECT_DEPTH, and the second then starts behind the surface the ray has just left.
-static DBL Least_Depth(bool moved, DBL travelled, DBL length)
+// a hit may have, on a chord of this length. It also is as far from the ray's own origin as POV-Ray wants it.
+static DBL Least_Depth(DBL back, DBL travelled, DBL length)
 {
-	if(!moved)
+	if(back == 0.0)
 		return 0.0;
-	const DBL overlap = min(0.1 * BACK_UP, 1e-3 * length);
-	return max(BACK_UP - overlap, BACK_UP + MIN_ISECT_DEPTH - travelled);
+	const DBL overlap = min(0.2 * MIN_ISECT_DEPTH, 1e-3 * length);
+	return max(back - overlap, back + MIN_ISECT_DEPTH - travelled);
 }
 
 // A surface exactly at the horizon is not outside it; intersections are good to far less than this part of its radius.
@@ -73,11 +77,11 @@ void Bent_Path::Record(const VECTOR from, const VECTOR to, size_t hole, bool tes
 bool Bent_Path::Search(const VECTOR from, const Vec3& direction, DBL length, const Blackhole *horizon, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post)
 {
 	Bent_Segment& s = *state;
-	const DBL back = s.moved ? BACK_UP : 0.0;
+	const DBL back = Back_Up(s.moved, s.travelled, bent->holes.Blind());
 	Assign_Vec3(s.chord.Direction, direction);
 	VEvaluateRay(s.chord.Origin, from, -back, s.chord.Direction);
 	isect.Depth = length + back;
-	const Chord_Condition condition(post, Least_Depth(s.moved, s.travelled, length), horizon);
+	const Chord_Condition condition(post, Least_Depth(back, s.travelled, length), horizon);
 	const bool found = bent->trace.FindIntersection(isect, s.chord, pre, condition);
 	Assign_Vector(s.chord.Origin, from);
 	isect.Depth = max(0.0, isect.Depth - back);
@@ -162,7 +166,7 @@ bool Bent_Path::Through(size_t index, VECTOR from, Vec3& direction, Intersection
 			s.chords++;
 			const bool test = shells.Overlap(c.nearest, c.farthest);
 			(test ? counts.Tested : counts.Skipped)++;
-			const bool near_horizon = (c.nearest <= 1.0 + 2.0 * HORIZON) || ((c.nearest - 1.0) * hole.Radius < BACK_UP);
+			const bool near_horizon = (c.nearest <= 1.0 + 2.0 * HORIZON) || ((c.nearest - 1.0) * hole.Radius < 2.0 * bent->holes.Blind());
 			const bool found = test && Search(start, along, min(chord_length, remains), near_horizon ? &hole : NULL, isect, pre, post);
 			s.moved = true;
 			Record(start, found ? isect.IPoint : end, index, test);
@@ -182,6 +186,9 @@ bool Bent_Path::Through(size_t index, VECTOR from, Vec3& direction, Intersection
 			Pass(start, along, chord_length);
 		}
 	}
+	// Without chords the way's length is still wanted, if something beyond the sphere can be hit: it fades, radiosity asks.
+	else if(bent->holes.Far_Objects() && !captured)
+		s.travelled += path.length() * hole.Radius;
 	s.moved = true;
 	s.captured = captured;
 	if(captured)
@@ -218,32 +225,7 @@ void Bent_Path::Emerge(const VECTOR point)
 		if((object->interior != NULL) && Inside_BBox(point, object->BBox) && object->Inside(point, bent->trace.threadData))
 			state->chord.AppendInterior(object->interior);
 	}
-	state->volume = state->volume || !state->chord.GetInteriors().empty();
-}
-
-void Bent_Path::Bent_Volume(Colour& colour, Trace::TraceTicket& ticket)
-{
-	if(state->spans.empty())
-		return;
-	Trace& trace = bent->trace;
-	const SceneData& scene = bent->scene;
-	Ray& ray = state->chord;
-	if(!(trace.qualityFlags & Q_VOLUME) || !ray.IsHollowRay())
-		return;
-	for(size_t i = state->spans.size(); i-- > 0; )
-	{
-		const Bent_Segment::Span& span = state->spans[i];
-		Assign_Vector(ray.Origin, span.from);
-		Assign_Vector(ray.Direction, span.direction);
-		Intersection isect;
-		isect.Depth = span.length;
-		VEvaluateRay(isect.IPoint, span.from, span.length, span.direction);
-		if(!ray.GetInteriors().empty())
-			trace.media.ComputeMedia(ray.GetInteriors(), ray, isect, colour, ticket);
-		trace.media.ComputeMedia(const_cast<vector<Media>&>(scene.atmosphere), ray, isect, colour, ticket);
-		if(scene.fog != NULL)
-			trace.ComputeFog(ray, isect, colour);
-	}
+	Set_Volume();
 }
 
 }

@@ -35,8 +35,7 @@ void Bent_Path::Begin()
 	s.drift = 0.0;
 	s.end = "";
 	s.spans.clear();
-	const SceneData& scene = bent->scene;
-	s.volume = (scene.fog != NULL) || !scene.atmosphere.empty() || !original.GetInteriors().empty();
+	Set_Volume();
 	if(bent->recorder != NULL)
 	{
 		s.record = bent->recorder->rays.size();

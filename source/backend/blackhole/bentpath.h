@@ -2,7 +2,7 @@
 /// A ray through a scene with holes: straight outside the effect spheres, chord after chord inside.
 ///
 /// trace.cpp's hooks hold a Bent_Path in each TraceRay. bentpath.cpp has the way from sphere to sphere,
-/// bentlegs.cpp what happens on each leg of it.
+/// bentlegs.cpp what happens on each leg of it, bentvolume.cpp what fills the space along it.
 #ifndef POVRAY_BENTPATH_H
 #define POVRAY_BENTPATH_H
 
@@ -30,18 +30,29 @@ class Bent_Path
 		bool Captured() const { return (state != NULL) && Bent_Captured(); }
 		/// Length of all chords before the last, zero for a straight ray.
 		DBL Travelled() const { return state == NULL ? 0.0 : Bent_Travelled(); }
-		/// Fog and media of all chords before the last, back to front.
-		void Compute_Volume(Colour& colour, Trace::TraceTicket& ticket) { if(state != NULL) Bent_Volume(colour, ticket); }
+		/// Media, rainbow and fog of the whole way, as TraceRay does for a straight ray.
+		void Compute_Volume(Intersection& isect, bool found, Colour& colour, Trace::TraceTicket& ticket);
+
+		// For trace.cpp's own fog and rainbow: what the way before the chord in hand adds. Straight rays: no change.
+
+		/// The share of light a fog lets through on the whole way; att: on the chord in hand, of this length.
+		static DBL Fog(const Bent_Rays *b, const Ray& ray, DBL width, const FOG *fog, DBL att) { return b == NULL ? att : Bent_Fog(*b, ray, width, *fog, att); }
+		/// The share a rainbow lets through up to the chord in hand, no less than its least.
+		static DBL Rainbow(const Bent_Rays *b, const Ray& ray, DBL distance, DBL least) { return b == NULL ? 1.0 : Bent_Rainbow(*b, ray, distance, least); }
 	private:
 		const Ray& Bent_Chord() const;
 		bool Bent_Captured() const;
 		DBL Bent_Travelled() const;
-		void Bent_Volume(Colour& colour, Trace::TraceTicket& ticket);
 		void Begin();
 		void End();
 		bool Enter(VECTOR origin, blackhole::Vec3& direction);
 		size_t Next_Sphere(const VECTOR from, const blackhole::Vec3& direction, size_t left, DBL& distance) const;
 		bool End_With(const char *end, bool found);
+		// bentvolume.cpp
+		static DBL Bent_Fog(const Bent_Rays& bent, const Ray& ray, DBL width, const FOG& fog, DBL att);
+		static DBL Bent_Rainbow(const Bent_Rays& bent, const Ray& ray, DBL distance, DBL least);
+		void Set_Volume();
+		void Take(size_t span, Intersection& isect);
 		// bentlegs.cpp
 		bool Straight(const VECTOR from, const blackhole::Vec3& direction, DBL length, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
 		bool Through(size_t hole, VECTOR from, blackhole::Vec3& direction, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);

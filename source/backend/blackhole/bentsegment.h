@@ -24,7 +24,7 @@ struct Recorder
 
 struct Bent_Segment
 {
-	/// A chord that hit nothing, kept for fog and media.
+	/// A chord, kept for fog and media.
 	struct Span
 	{
 		VECTOR from, direction;
@@ -35,11 +35,12 @@ struct Bent_Segment
 	blackhole::Vec3 tangent; ///< the path's at the hit, coordinates
 	bool has_tangent;        ///< the hit is inside an effect sphere
 	bool captured;
-	bool volume;             ///< fog or media: spans are kept
+	bool volume;             ///< fog, rainbow or media: spans are kept
 	bool moved;              ///< no longer on the ray's first chord
 	DBL budget;              ///< the farthest the ray may go; infinite unless the caller limits it
 	DBL travelled;           ///< length of the chords before the one in hand
-	std::vector<Span> spans;
+	std::vector<Span> spans; ///< those before the chord in hand
+	DBL before;              ///< length of the way before the span that is being filled
 	size_t record;           ///< index in the recorder, if there is one
 	unsigned int chords;
 	DBL drift;

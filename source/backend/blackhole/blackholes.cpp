@@ -45,6 +45,8 @@ void Blackhole_Counts::Add(const Blackhole_Counts& other)
 
 Blackholes::Blackholes(POVMS_Object& options) :
 	enabled(options.TryGetBool(kPOVAttrib_Blackhole, true)),
+	blind(MIN_ISECT_DEPTH),
+	far_objects(false),
 	falling(NULL),
 	paths(Ray_Paths::Create(options))
 {
@@ -83,6 +85,9 @@ std::string Blackholes::Prepare(const SceneData& scene, TraceThreadData *thread,
 	std::string report;
 	char text[512];
 	shells.assign(holes.size(), Shells());
+	for(size_t i = 0; i < scene.objects.size(); i++)
+		if(Visible(*scene.objects[i]))
+			blind = max(blind, Blind_Depth(*scene.objects[i]));
 	for(size_t h = 0; h < holes.size(); h++)
 	{
 		const Blackhole& hole = *holes[h];
@@ -104,6 +109,7 @@ std::string Blackholes::Prepare(const SceneData& scene, TraceThreadData *thread,
 			if((nearest <= 1.0) && Pierces_Horizon(scene.objects[i], hole, thread) && (straddling++ == 0))
 				first = Object_Name(*scene.objects[i]);
 		}
+		far_objects = far_objects || (reached < visible);
 		shells[h].Merge();
 		snprintf(text, sizeof text, "Black hole at <%g,%g,%g>: Rs %g, effect radius %g, tolerance %g, method %s; %s%u of %u objects within reach",
 		         hole.Center[X], hole.Center[Y], hole.Center[Z], hole.Radius, hole.Reach(), hole.Tolerance,

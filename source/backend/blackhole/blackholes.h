@@ -53,6 +53,10 @@ class Blackholes
 		/// After parsing: finds what is within reach, says so, and warns of what straddles the horizon.
 		/// Returns the message's text.
 		std::string Prepare(const SceneData& scene, TraceThreadData *thread, MessageFactory& messages);
+		/// The most any object's code is blind for after a ray's start, scene units.
+		DBL Blind() const { return blind; }
+		/// Whether there is something to hit that is not within reach of every hole.
+		bool Far_Objects() const { return far_objects; }
 		const Shells& Shells_Of(size_t hole) const { return shells[hole]; }
 
 		/// The hole in whose effect sphere the point lies, or NULL.
@@ -74,6 +78,8 @@ class Blackholes
 		bool enabled;
 		std::vector<Blackhole *> holes;
 		std::vector<Shells> shells;
+		DBL blind;
+		bool far_objects;
 		const Blackhole *falling;
 		boost::scoped_ptr<Ray_Paths> paths;
 		boost::mutex mutex;

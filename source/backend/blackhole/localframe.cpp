@@ -34,17 +34,21 @@ struct Local_Frame::Seen
 	Vector3d normal;
 };
 
-void Local_Frame::Begin(const Bent_Rays *bent, const VECTOR point)
+void Local_Frame::Begin(const Bent_Rays *bent)
 {
 	const Bent_Segment *way = bent->Shaded(*ray);
-	if((way == NULL) || !way->has_tangent)
+	if(way == NULL)
 		return;
-	const Blackhole *hole = bent->holes.At(point);
+	chord_depth = isect.Depth;
+	isect.Depth += way->travelled;
+	if(!way->has_tangent)
+		return;
+	const Blackhole *hole = bent->holes.At(isect.IPoint);
 	if(hole == NULL)
 		return;
 	seen = new Seen(*ray);
 	seen->hole = hole;
-	seen->x = hole->To_Hole(point);
+	seen->x = hole->To_Hole(isect.IPoint);
 	const Vec3 scene_normal = Vec3_Of(**normal);
 	const DBL R = hole->Settings().effect_radius;
 	Assign_Vec3(seen->ray.Direction, coordinate_to_static(seen->x, Graze(way->tangent, Vec3_Of(ray->Direction), scene_normal), R));
@@ -56,6 +60,7 @@ void Local_Frame::Begin(const Bent_Rays *bent, const VECTOR point)
 
 void Local_Frame::End()
 {
+	isect.Depth = chord_depth;
 	delete seen;
 }
 

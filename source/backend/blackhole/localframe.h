@@ -14,13 +14,14 @@ namespace pov
 class Bent_Rays;
 class Blackhole;
 
-/// What a surface sees of a bent ray that hit it: direction and normal in the static frame there.
+/// What a surface sees of a bent ray that hit it: direction and normal in the static frame there, and the depth of
+/// the hit along the whole way instead of the last chord (for fading), until the frame ends.
 class Local_Frame
 {
 	public:
 		// The tests for NULL are inline, as in Bent_Path.
-		Local_Frame(const Bent_Rays *bent, const Ray& r, const Vector3d& n, const VECTOR point) : ray(&r), normal(&n), seen(NULL) { if(bent != NULL) Begin(bent, point); }
-		~Local_Frame() { if(seen != NULL) End(); }
+		Local_Frame(const Bent_Rays *bent, const Ray& r, const Vector3d& n, Intersection& hit) : ray(&r), normal(&n), isect(hit), chord_depth(-1.0), seen(NULL) { if(bent != NULL) Begin(bent); }
+		~Local_Frame() { if(chord_depth >= 0.0) End(); }
 
 		const Ray& Seen_Ray() const { return *ray; }
 		const Vector3d& Seen_Normal() const { return *normal; }
@@ -28,11 +29,13 @@ class Local_Frame
 		void Turn(Vector3d& n) const { if(seen != NULL) Bent_Turn(n); }
 	private:
 		struct Seen; ///< what differs from the scene's, where something does
-		void Begin(const Bent_Rays *bent, const VECTOR point);
+		void Begin(const Bent_Rays *bent);
 		void End();
 		void Bent_Turn(Vector3d& n) const;
 		const Ray *ray;
 		const Vector3d *normal;
+		Intersection& isect;
+		DBL chord_depth; ///< the hit's depth on its chord; negative for a ray that is not bent
 		Seen *seen;
 
 		Local_Frame(const Local_Frame&);

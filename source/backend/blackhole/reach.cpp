@@ -15,6 +15,9 @@
 #include "backend/math/vector.h"
 #include "backend/render/ray.h"
 #include "backend/scene/objects.h"
+#include "backend/shape/blob.h"
+#include "backend/shape/csg.h"
+#include "backend/shape/isosurf.h"
 #include "backend/shape/planes.h"
 #include "backend/shape/spheres.h"
 #include "backend/blackhole/reach.h"
@@ -83,6 +86,31 @@ void Radii(const ObjectBase& object, const Blackhole& hole, DBL& nearest, DBL& f
 	// bounding boxes are in single precision
 	nearest = max(0.0, sqrt(near2) - 1e-6 * size) / hole.Radius;
 	farthest = (sqrt(far2) + 1e-6 * size) / hole.Radius;
+}
+
+// The shapes' own DEPTH_TOLERANCE, in their own units: none exceeds 1e-4, but for blobs. An isosurface takes what is within
+// a few times its accuracy for the surface it starts from.
+DBL Blind_Depth(const ObjectBase& object)
+{
+	DBL depth = 1e-4;
+	if(dynamic_cast<const Blob *>(&object) != NULL)
+		depth = 1e-2;
+	const IsoSurface *iso = dynamic_cast<const IsoSurface *>(&object);
+	if(iso != NULL)
+		depth = max(depth, 10.0 * iso->accuracy);
+	if(object.Trans != NULL)
+	{
+		DBL square = 0.0; // no direction is stretched by more than the root of this
+		for(int i = 0; i < 3; i++)
+			for(int j = 0; j < 3; j++)
+				square += Sqr(object.Trans->matrix[i][j]);
+		depth *= sqrt(square);
+	}
+	const CompoundObject *compound = dynamic_cast<const CompoundObject *>(&object);
+	if(compound != NULL)
+		for(size_t i = 0; i < compound->children.size(); i++)
+			depth = max(depth, Blind_Depth(*compound->children[i]));
+	return depth;
 }
 
 std::string Object_Name(const ObjectBase& object)

@@ -28,6 +28,8 @@ class Shells
 
 /// The nearest and farthest an object comes to the hole's centre, in Schwarzschild radii; the farthest may be infinite.
 void Radii(const ObjectBase& object, const Blackhole& hole, DBL& nearest, DBL& farthest);
+/// The depth up to which its own code drops hits, scene units: what lies nearer to a ray's start is missed.
+DBL Blind_Depth(const ObjectBase& object);
 /// Whether a ray can hit it at all.
 bool Visible(const ObjectBase& object);
 /// Whether some of the object's surface is inside the horizon; tried with chords, so a speck may be missed.
