@@ -244,6 +244,8 @@ void Parser::Finish_Blackholes()
 	for(size_t i = 0; i < holes.Holes().size(); i++)
 	{
 		const Blackhole& hole = *holes.Holes()[i];
+		if(sceneData->parsedCamera.Type == MESH_CAMERA) // its location says nothing
+			break;
 		const DBL r = hole.Distance(sceneData->parsedCamera.Location);
 		string problem;
 		if(!(r < 1e30))

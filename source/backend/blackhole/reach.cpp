@@ -88,7 +88,7 @@ void Radii(const ObjectBase& object, const Blackhole& hole, DBL& nearest, DBL& f
 	farthest = (sqrt(far2) + 1e-6 * size) / hole.Radius;
 }
 
-// The shapes' own DEPTH_TOLERANCE, in their own units: none exceeds 1e-4, but for blobs. An isosurface takes what is within
+// The shapes' own DEPTH_TOLERANCE: none exceeds 1e-4, but for blobs. Some mean their own units, some the scene's. An isosurface takes what is within
 // a few times its accuracy for the surface it starts from.
 DBL Blind_Depth(const ObjectBase& object)
 {
@@ -104,7 +104,7 @@ DBL Blind_Depth(const ObjectBase& object)
 		for(int i = 0; i < 3; i++)
 			for(int j = 0; j < 3; j++)
 				square += Sqr(object.Trans->matrix[i][j]);
-		depth *= sqrt(square);
+		depth *= max(1.0, sqrt(square));
 	}
 	const CompoundObject *compound = dynamic_cast<const CompoundObject *>(&object);
 	if(compound != NULL)

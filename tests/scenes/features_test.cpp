@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+/// Every feature of POV-Ray around a hole: the scenes of features/ are asked the same questions, each of which a mistake in
+/// handing chords to POV-Ray, or in what is done along them, would answer wrongly. The hole-free twin says what POV-Ray
+/// itself does with the same question.
+#include "povray.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace {
+
+std::vector<std::string> names() {
+	std::vector<std::string> list;
+	for (const auto& file : std::filesystem::directory_iterator(FEATURES))
+		if (file.path().extension() == ".pov")
+			list.push_back(file.path().stem());
+	std::sort(list.begin(), list.end());
+	return list;
+}
+
+class Feature : public testing::TestWithParam<std::string> {
+protected:
+	// The feature's picture; twin: without the hole.
+	Picture render(bool twin, const std::string& words = "") {
+		const Rendering run = povray("#include \"" + GetParam() + ".pov\"", 64, 48,
+			std::string("+L" FEATURES " ") + words + (twin ? " Blackhole=off" : ""));
+		EXPECT_FALSE(run.picture.samples.empty()) << run.text;
+		EXPECT_EQ(run.text.find("could not be followed"), std::string::npos);
+		text = run.text;
+		return run.picture;
+	}
+	// A limit the scene's file states for itself, with the reason beside it: "// <word> limit 0.02: because".
+	double limit(const std::string& word, double otherwise) {
+		std::ifstream in(std::string(FEATURES "/") + GetParam() + ".pov");
+		for (std::string line; std::getline(in, line);)
+			if (line.rfind("// " + word + " limit ", 0) == 0)
+				return std::stod(line.substr(10 + word.size()));
+		return otherwise;
+	}
+	std::string text;
+};
+
+// The share of pixels with a channel that differs by more than this.
+double differing(const Picture& a, const Picture& b, double by) {
+	if (a.samples.size() != b.samples.size() || a.samples.empty())
+		return 1;
+	int n = 0;
+	for (std::size_t i = 0; i < a.samples.size(); i += 3) {
+		int most = 0;
+		for (std::size_t c = i; c < i + 3; c++)
+			most = std::max(most, std::abs(int(a.samples[c]) - int(b.samples[c])));
+		n += most > by * 65535;
+	}
+	return n * 3.0 / double(a.samples.size());
+}
+
+double value(const std::string& text, const std::string& label) {
+	const std::size_t at = text.find(label);
+	return at == std::string::npos ? -1 : std::strtod(text.c_str() + at + label.size(), nullptr);
+}
+
+} // namespace
+
+// The scene is about the hole at all: much of the picture is other than without it, and some of it is black.
+TEST_P(Feature, IsBent) {
+	const Picture hole = render(false), twin = render(true);
+	EXPECT_GT(differing(hole, twin, 0.02), 0.1);
+}
+
+// A hole of next to no mass, followed in many chords, changes nothing: what is added up along chords is what a straight ray
+// gives. Light is bent by 1e-5 radians at most, a pixel is 1e-2.
+TEST_P(Feature, TendsToTheHoleFreePicture) {
+	const Picture hole = render(false, "Declare=Rs=1e-5 Declare=Tol=1e-9");
+	const double chords = value(text, "Per Ray:");
+	const Picture twin = render(true);
+	const double share = differing(hole, twin, 0.004);
+	std::printf("%s: %.1f chords a ray, %.2f %% of pixels differ by over 0.4 %%\n", GetParam().c_str(), chords, 100 * share);
+	EXPECT_GT(chords, 5);
+	EXPECT_LE(share, limit("Straight", 0.005));
+}
+
+// The same pixels whichever way objects are bounded and however many threads work: wherever POV-Ray's own are. (Its random
+// numbers and radiosity depend on which thread gets which block; a small picture may hide that, a larger twin shows it.)
+TEST_P(Feature, DependsOnNeitherBoundingNorThreads) {
+	const Picture hole = render(false);
+	for (const std::string words : {"-MB", "+BM2", "-UV", "-UL", "+WT4"}) {
+		const Picture other = render(false, words);
+		if (hole == other)
+			continue;
+		EXPECT_FALSE(render(true) == render(true, words) && render(true, "+W320 +H240") == render(true, words + " +W320 +H240"))
+			<< words << " changes " << 100 * differing(hole, other, 0) << " % of the picture";
+	}
+}
+
+// Turned and mirrored as a whole, the picture stays what it was, but for pixels on edges.
+TEST_P(Feature, IsTheSameTurnedAndMirrored) {
+	const Picture hole = render(false), twin = render(true);
+	for (const char* words : {"Declare=Turned=1", "Declare=Mirrored=1"}) {
+		const double bent = differing(hole, render(false, words), 0.01), straight = differing(twin, render(true, words), 0.01);
+		std::printf(
+			"%s %s: %.2f %% of pixels differ, without the hole %.2f %%\n", GetParam().c_str(), words, 100 * bent, 100 * straight);
+		EXPECT_LE(bent, straight * 1.3 + limit("Turned", 0.01)) << words;
+	}
+}
+
+// At other scales the picture changes no more than POV-Ray's own does.
+TEST_P(Feature, IsTheSameAtEveryScale) {
+	const Picture hole = render(false), twin = render(true);
+	for (const char* words : {"Declare=Size=1e-2", "Declare=Size=1e4"}) {
+		const double bent = differing(hole, render(false, words), 0.01), straight = differing(twin, render(true, words), 0.01);
+		std::printf(
+			"%s %s: %.2f %% of pixels differ, without the hole %.2f %%\n", GetParam().c_str(), words, 100 * bent, 100 * straight);
+		EXPECT_LE(bent, straight * 1.3 + limit("Scale", 0.01)) << words;
+	}
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Feature, testing::ValuesIn(names()), [](const auto& info) { return info.param; });
