@@ -175,6 +175,31 @@ bool first_hit(const Vec3& x, const Vec3& d, double R, const std::function<doubl
 	return false;
 }
 
+std::vector<Vec3> polyline(const Vec3& x, const Vec3& d, double R, int n) {
+	const Start start(x, d);
+	const Ray ray(start.r, start.a);
+	const Real last = ray.escapes() ? Real(R) : Real(1);
+	std::vector<Vec3> points;
+	// Evenly spaced in the square root of the distance from the turning point, where the path is smooth.
+	if (ray.turns()) {
+		const Real turn = ray.turning_radius();
+		for (int i = 0; i < n; i++) {
+			const Real s = 1 - Real(i) / n, r = turn + (start.r - turn) * s * s;
+			points.push_back(start.at(r, ray.swept(r, 0)));
+		}
+		for (int i = 0; i <= n; i++) {
+			const Real s = Real(i) / n, r = turn + (last - turn) * s * s;
+			points.push_back(start.at(r, ray.swept(r, 1)));
+		}
+		return points;
+	}
+	for (int i = 0; i <= n; i++) {
+		const Real r = start.r * std::pow(last / start.r, Real(i) / n);
+		points.push_back(start.at(r, ray.swept(r, 0)));
+	}
+	return points;
+}
+
 double distance(const Vec3& x, const Vec3& d, const Vec3& q, int turns) {
 	const Start start(x, d);
 	const Ray ray(start.r, start.a);

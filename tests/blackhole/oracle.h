@@ -10,6 +10,7 @@
 #include "blackhole/vec.h"
 
 #include <functional>
+#include <vector>
 
 namespace oracle {
 
@@ -53,6 +54,10 @@ blackhole::Vec3 point(const blackhole::Vec3& x, const blackhole::Vec3& d, double
 /// horizon. Returns false if it never does; otherwise the point and the path's unit tangent there.
 bool first_hit(const blackhole::Vec3& x, const blackhole::Vec3& d, double R,
 	const std::function<double(const blackhole::Vec3&)>& f, blackhole::Vec3& point, blackhole::Vec3& tangent);
+
+/// Points on the exact path from x on, to the radius R on its way out or to the horizon; n for each leg. Their polyline's
+/// length falls short by a share of 1 / n^2.
+std::vector<blackhole::Vec3> polyline(const blackhole::Vec3& x, const blackhole::Vec3& d, double R, int n);
 
 /// Distance of a point q from the exact path through x along d, to first order; q must be near the path.
 /// turns: how often q has been round the hole already (its angle is taken in [2 pi turns, 2 pi turns + 2 pi)).
