@@ -85,6 +85,13 @@ TEST_P(Feature, TendsToTheHoleFreePicture) {
 	EXPECT_LE(share, limit("Straight", 0.005));
 }
 
+// A hole that no ray comes near changes not one bit: straight legs are POV-Ray's own.
+TEST_P(Feature, IsTheHoleFreePictureFarFromTheHole) {
+	const Picture far = render(false, "Declare=Far=1");
+	EXPECT_LE(value(text, "Bent Rays:"), 20) << "the hole is not far"; // a mirror may send one that way
+	EXPECT_LE(differing(far, render(true, "Declare=Far=1"), 0), limit("Far", 0));
+}
+
 // The same pixels whichever way objects are bounded and however many threads work: wherever POV-Ray's own are. (Its random
 // numbers and radiosity depend on which thread gets which block; a small picture may hide that, a larger twin shows it.)
 TEST_P(Feature, DependsOnNeitherBoundingNorThreads) {
@@ -118,6 +125,51 @@ TEST_P(Feature, IsTheSameAtEveryScale) {
 			"%s %s: %.2f %% of pixels differ, without the hole %.2f %%\n", GetParam().c_str(), words, 100 * bent, 100 * straight);
 		EXPECT_LE(bent, straight * 1.3 + limit("Scale", 0.01)) << words;
 	}
+}
+
+// The ways to sample a pixel add up bent rays as they do straight ones.
+TEST(Antialiasing, TendsToTheHoleFreePicture) {
+	for (const char* scene : {"csg", "textures", "fog"})
+		for (const char* words : {"+A0.1 +AM1 -J", "+A0.1 +AM2 -J", "+A0.02 +AM2 +R4 +J", "+A0.3 +AM1 +R5 +J"}) {
+			const std::string all = std::string("+L" FEATURES " ") + words, text = std::string("#include \"") + scene + ".pov\"";
+			const Picture hole = povray(text, 64, 48, all + " Declare=Rs=1e-5 Declare=Tol=1e-9").picture,
+						  twin = povray(text, 64, 48, all + " Blackhole=off").picture,
+						  without = povray(text, 64, 48, std::string("+L" FEATURES " Blackhole=off")).picture;
+			EXPECT_LE(differing(hole, twin, 0.004), 0.005) << scene << " " << words;
+			EXPECT_GT(differing(twin, without, 0.01), 0.02) << "no pixel of " << scene << " wants " << words;
+		}
+}
+
+// A scene that is its own mirror image gives a picture that is.
+TEST(Symmetry, OfTheSceneIsThatOfThePicture) {
+	const std::string half = "sphere { <3, 1, 4>, 1.2 pigment { rgb <1, 0.4, 0.2> } finish { reflection 0.3 } } "
+							 "box { <1, -2, -3>, <2.2, -1, -2> pigment { rgbt <0.4, 1, 0.5, 0.5> } interior { ior 1.3 } } ";
+	for (int width : {64, 65}) {
+		const Rendering run = povray("camera { location <0, 2, -14> right x*image_width/image_height look_at 0 angle 45 } "
+									 "light_source { <0, 20, -10> rgb 1 } "
+									 "sky_sphere { pigment { gradient y color_map { [0 rgb 0.1] [1 rgb <0.2, 0.4, 1>] } } } "
+									 "plane { y, -3 pigment { rgb 0.6 } } "
+									 "fog { distance 50 color rgb 0.7 } " +
+										 half + "union { " + half + " scale <-1, 1, 1> } blackhole { 0, 1 bend_lights off }",
+			width, 48);
+		ASSERT_FALSE(run.picture.samples.empty()) << run.text;
+		int other = 0;
+		for (int y = 0; y < 48; y++)
+			for (int x = 0; x < width; x++)
+				for (int c = 0; c < 3; c++)
+					other += std::fabs(run.picture.at(x, y, c) - run.picture.at(width - 1 - x, y, c)) > 1e-4;
+		EXPECT_LE(other, 6) << width; // the two rays nearest a silhouette differ by rounding
+	}
+}
+
+// A bent ray is one level, however many chords it has.
+TEST(Levels, AreCountedByRays) {
+	const std::string view =
+		"camera { location <0, 0, -14> look_at 0 angle 45 } sky_sphere { pigment { rgb 1 } } blackhole { 0, 1 tolerance 1e-6 } ";
+	EXPECT_NE(povray(view + "sphere { <0, 0, 5>, 2 pigment { rgb 1 } }", 32, 24).text.find("Max Level: 1/5"), std::string::npos);
+	EXPECT_NE(povray(view + "sphere { <0, 0, 500>, 200 pigment { rgb 1 } finish { reflection 1 } }", 32, 24)
+				  .text.find("Max Level: 2/5"),
+		std::string::npos);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Feature, testing::ValuesIn(names()), [](const auto& info) { return info.param; });

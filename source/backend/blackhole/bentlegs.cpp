@@ -180,6 +180,9 @@ bool Bent_Path::Through(size_t index, VECTOR from, Vec3& direction, Intersection
 			}
 			if(chord_length >= remains)
 			{
+				Assign_Vector(s.chord.Origin, start);
+				Assign_Vec3(s.chord.Direction, along);
+				isect.Depth = remains;
 				s.end = "max distance";
 				return false;
 			}

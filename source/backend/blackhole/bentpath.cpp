@@ -82,7 +82,10 @@ bool Bent_Path::End_With(const char *end, bool found)
 // The coordinate direction in which the ray leaves its origin. False if no light comes from there.
 bool Bent_Path::Enter(VECTOR origin, Vec3& direction)
 {
-	direction = unit(Vec3_Of(original.Direction));
+	// Not a bit is changed of a ray that goes straight.
+	direction = Vec3_Of(original.Direction);
+	if(fabs(dot(direction, direction) - 1.0) > 1e-12)
+		direction = unit(direction);
 	Assign_Vector(origin, original.Origin);
 	const Blackhole *falling = bent->holes.Falling();
 	if(original.IsPrimaryRay() && (falling != NULL))
