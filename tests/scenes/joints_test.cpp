@@ -103,6 +103,26 @@ TEST(Joints, BesideThePathNothingIsHit) {
 	EXPECT_GT(miss, tries * 9 / 10);
 }
 
+// An isosurface takes a start within some accuracies of it for its own: with coarse ones, a joint in a hundred is so near.
+TEST(Joints, IsosurfacesAreNotMissed) {
+	const std::string scene =
+		"camera { location <0, 2, -14> look_at 0 angle 45 } #for (I, 0, 7) isosurface { function { x*x + y*y + z*z - 1 } "
+		"max_gradient 5 accuracy 0.01 contained_by { sphere { 0, 1.4 } } scale 1.3 pigment { rgb 1 } finish { emission 1 "
+		"ambient 0 diffuse 0 } translate <4*cos(I*pi/4), 0.5*sin(I), 4*sin(I*pi/4)> } #end ";
+	const Rendering twin = povray(scene, 160, 120),
+					many = povray(scene + "blackhole { 0, 1e-5 effect_radius 30 tolerance 1e-9 }", 160, 120);
+	ASSERT_FALSE(many.picture.samples.empty()) << many.text;
+	int seen = 0, missing = 0;
+	for (int y = 0; y < 120; y++)
+		for (int x = 0; x < 160; x++) {
+			seen += !twin.picture.black(x, y);
+			missing += !twin.picture.black(x, y) && many.picture.black(x, y);
+		}
+	std::printf("%d pixels of isosurface, %d missing\n", seen, missing);
+	EXPECT_GT(seen, 5000);
+	EXPECT_LE(missing, seen / 1000); // on silhouettes: those are no sharper than the accuracy
+}
+
 namespace {
 
 constexpr double R = 30;
