@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "blackhole/closed.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace blackhole {
+namespace {
+
+using Quad = __float128;
+
+double root(double a) { return std::sqrt(a); }
+long double root(long double a) { return std::sqrt(a); }
+Quad root(Quad a) {
+	Quad y = std::sqrt(static_cast<double>(a));
+	for (int i = 0; i < 2; i++)
+		y = (y + a / y) / 2;
+	return y;
+}
+
+// F2, B and kappa. With w = u - 2/3, 4/27 - u^2 + u^3 = w^2 (u + 1/3), so kappa needs neither b nor its critical value.
+// Returns whether T had the digits: by the size of what kappa's rounding errors are, over kappa.
+template <typename T> bool measure(const Vec3& x, const Vec3& d, Launch& l) {
+	const T a = x.x, b = x.y, c = x.z, e = d.x, f = d.y, g = d.z;
+	const T i = b * g - c * f, j = c * e - a * g, k = a * f - b * e;
+	const T r2 = a * a + b * b + c * c, s = a * e + b * f + c * g, n2 = i * i + j * j + k * k;
+	l.axis = {double(i), double(j), double(k)};
+	l.outward = s >= 0;
+	const T r = root(r2), u = 1 / r;
+	l.r = double(r);
+	l.u = double(u);
+	const T s2 = s * s;
+	l.radial = n2 <= T(1e-60) * s2;
+	if (l.radial) {
+		l.F2 = l.B = l.across = 0;
+		l.kappa = -1;
+		return sizeof(T) > sizeof(double);
+	}
+	const T across = 1 / root(r2 * n2);
+	const T F2 = s2 * across * across, w = u - T(2) / 3, Q2 = w * w * (u + T(1) / 3);
+	const T kappa = T(6.75) * (Q2 - F2);
+	l.across = double(across);
+	l.F2 = double(F2);
+	l.B = double(F2 + u * u * (1 - u));
+	l.kappa = double(kappa);
+	const T error = F2 * F2 * (1 + F2 * r2) + w * w * (1 + u * u * u * u);
+	constexpr double digits = sizeof(T) == sizeof(double) ? 400 : 8e5;
+	return error < T(digits * digits) * kappa * kappa;
+}
+
+// A root of m^2 (1 + m) = B, with s = sqrt(B); Halley's method, from a fit of m/s good to 7e-6.
+double negative_root(double B, double s) {
+	double m;
+	int rounds = 1;
+	if (s < 0.77) {
+		const double s2 = s * s;
+		const double p0 = 0.9999929637619972 - 0.49909040458556325 * s, p2 = 0.6045712939328531 - 0.8140005965921753 * s;
+		const double p4 = 0.8913262577235064 - 0.6148118510285162 * s;
+		m = s * (p0 + s2 * (p2 + s2 * (p4 + s2 * 0.18868471603158574)));
+	} else {
+		const double c = std::cbrt(B);
+		m = c - 1.0 / 3 + 1 / (9 * c);
+		rounds = 3;
+	}
+	for (int i = 0; i < rounds; i++) {
+		const double g = m * m * (1 + m) - B, g1 = m * (3 * m + 2), g2 = 3 * m + 1;
+		m -= g * g1 / (g1 * g1 - g * g2);
+	}
+	return m;
+}
+
+// f at y for a ray that starts at x: of the forms of f, the one without cancellation.
+double value(const Cubic& c, double x, double F2, double y) {
+	if (c.kappa > 0 && x < 2.0 / 3)
+		return std::max(0.0, F2 + (x - y) * (x + y - (x * x + x * y + y * y)));
+	const double w = y - 2.0 / 3;
+	if (y < 1.0 / 3 || y > 1)
+		return c.B - y * y * (1 - y);
+	return std::max(0.0, w * w * (y + 1.0 / 3) - 4.0 / 27 * c.kappa);
+}
+
+// Carlson's integral of the first kind, from its arguments X1 (at the root -m), and the sum T and product N of the other
+// two, real or conjugate. Duplication (DLMF 19.26.18) with the pair kept as T and N, unscaled, so that with w the mean of
+// the arguments E2 w^2 and E3 w^3 stay those of the cubic (about its inflexion at 1/3): -1/3 and 2/27 - B.
+// The series is DLMF 19.19.7 with a = 1/2, c = 3/2, to the eleventh order.
+double carlson(double X1, double T, double N, double factor, double B) {
+	const double beta = 2.0 / 27 - B, limit = std::fabs(beta) * (27 * 1500);
+	double w3 = X1 + T;
+	while (w3 < 18 || w3 * w3 * w3 < limit) {
+		const double n = std::sqrt(N), lambda = n + std::sqrt(X1 * (T + 2 * n));
+		N += lambda * (T + lambda);
+		T += 2 * lambda;
+		X1 += lambda;
+		w3 = X1 + T;
+		factor *= 2;
+	}
+	const double t = 3 / w3, t2 = t * t, a = -1.0 / 3 * t2, e = beta * (t * t2), a2 = a * a;
+	const double c0 = (1 - a * (1.0 / 10)) + a2 * ((1.0 / 24 - a * (5.0 / 208)) + a2 * (35.0 / 2176 - a * (3.0 / 256)));
+	const double c1 = (1.0 / 14 - a * (3.0 / 44)) + a2 * ((1.0 / 16 - a * (35.0 / 608)) + a2 * (315.0 / 5888));
+	const double c2 = (3.0 / 104 - a * (15.0 / 272)) + a2 * (5.0 / 64);
+	const double c3 = 5.0 / 304 - a * (35.0 / 736);
+	return factor * std::sqrt(t) * (c0 + e * (c1 + e * (c2 + e * c3)));
+}
+
+// Angle swept between x and y, given q = sqrt(f / (u + m)) at both: on one leg, or over the turning point between.
+//
+// With Xi = sqrt(x - ei), Yi likewise, the angle is 2 RF(U1^2, U2^2, U3^2), Ui (x - y) = Xi Yj Yk + Yi Xj Xk (DLMF
+// 19.29.4, one factor constant); past a turning point one root, X2 or X3, changes its sign. Then, E = e3 - e2 and a = X1 + Y1,
+//   S = U2 + U3 = a c / (x - y) on one leg, E a / c over the turning point; c^2 = (qx + qy)^2 - (x - y)^2,
+//   U2 - U3 = E / S,  U1^2 = U2^2 + e2 + m,
+// without cancellation, all real for complex pairs too, and signed (U3 < 0 beyond half a period), so that one first
+// duplication, lambda = U2 U3 + U1 S, brings any angle into Carlson's range.
+double sweep(const Cubic& c, double x, double qx, double y, double qy, bool over) {
+	const double ax = std::sqrt(x + c.m), ay = std::sqrt(y + c.m), a = ax + ay, dxy = std::fabs(x - y), K2 = 2 * qx * qy;
+	const double G = std::max(x, y) > 1 ? 2 * x * y - (1 + c.m) * (x + y - 2 * c.m) : qx * qx + qy * qy - dxy * dxy;
+	double P, M2, U1; // S^2, (U2 - U3)^2
+	if (over) {
+		M2 = (G + K2) / (a * a);
+		P = c.D / M2;
+		U1 = std::sqrt(0.25 * (P + M2) + 0.5 + 1.5 * c.m);
+	} else {
+		if (dxy == 0)
+			return 0;
+		const double inv = 1 / dxy;
+		P = a * a * (G < 0 && c.D < 0 ? -c.D / (K2 - G) : (G + K2) * (inv * inv));
+		M2 = c.D / P;
+		U1 = (ax * qy + ay * qx) * inv;
+	}
+	const double S = std::sqrt(P), X1 = U1 * (U1 + S) + 0.25 * (P - M2);
+	return carlson(X1, S * (2 * U1 + S), P * X1, 4, c.B);
+}
+
+} // namespace
+
+Cubic::Cubic(double B_, double kappa_) : B(B_), kappa(kappa_), m(negative_root(B, std::sqrt(B))) {
+	// D = (1 + m) mu, mu = 1 - 3 m; mu (3 - mu)^2 = 4 kappa: Newton's step gives a small mu the digits of kappa.
+	double mu = 1 - 3 * m;
+	if (std::fabs(mu) < 0.1)
+		mu = (mu * mu * (2 * mu - 6) + 4 * kappa) / (3 * (3 - mu) * (1 - mu));
+	D = (1 + m) * mu;
+}
+
+Launch::Launch(const Vec3& x, const Vec3& given) {
+	Vec3 d = given;
+	const double d2 = dot(d, d);
+	if (!(d2 > 1e-40 && d2 < 1e40)) // lengths near the ends of the exponent's range
+		d = unit((1 / std::max({std::fabs(d.x), std::fabs(d.y), std::fabs(d.z)})) * d);
+	if (measure<double>(x, d, *this)) {
+		outcome = (u < 2.0 / 3 ? outward || kappa > 0 : outward && kappa < 0) ? Outcome::escaped : Outcome::captured;
+		return;
+	}
+	if (!measure<long double>(x, d, *this))
+		measure<Quad>(x, d, *this);
+	outcome = classify(x, d);
+	// A ray so near to critical that quadruple precision does not tell takes a side.
+	const bool out = outcome == Outcome::escaped;
+	const bool beyond = u < 2.0 / 3 ? (outward ? kappa > 0 : out) : (outward ? !out : kappa > 0);
+	if (beyond != (kappa > 0) || kappa == 0)
+		kappa = beyond ? 1e-32 : -1e-32;
+}
+
+bool escape(const Vec3& x, const Vec3& d, double R, Escape& out) {
+	const Launch l(x, d);
+	if (l.outcome == Outcome::captured)
+		return false;
+	if (l.radial) {
+		out.phi = 0;
+		out.at = out.tangent = l.u * x;
+		return true;
+	}
+	const double u = l.u, y = std::min(1 / R, u);
+	double Fy2;
+	if (l.B > 1e36) { // b < 1e-18: nothing bends by as much as a rounding error
+		Fy2 = l.B;
+		out.phi = (u - y) / std::sqrt(l.B);
+	} else {
+		const Cubic c(l.B, l.kappa);
+		Fy2 = value(c, u, l.F2, y);
+		out.phi = sweep(c, u, std::sqrt(l.F2 / (u + c.m)), y, std::sqrt(Fy2 / (y + c.m)), !l.outward);
+	}
+	// At the exit the ray is at an angle off the radial of tangent y / sqrt(f(y)).
+	const double size = 1 / std::sqrt(Fy2 + y * y), ca = std::sqrt(Fy2) * size, sa = y * size;
+	const double cp = std::cos(out.phi), sp = std::sin(out.phi);
+	const Vec3 e2 = l.across * cross(l.axis, x), e1 = u * x;
+	out.at = cp * e1 + sp * e2;
+	out.tangent = (cp * ca - sp * sa) * e1 + (sp * ca + cp * sa) * e2;
+	return true;
+}
+
+} // namespace blackhole

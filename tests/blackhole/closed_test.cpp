@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+/// The closed form, against quadrature in fifty digits and in long double. The witness shares no step with it: its roots
+/// come by Newton's method in fifty digits, its integrals by Gauss-Kronrod, after substitutions that take both the
+/// turning point's root and its neighbour out of the integrand (u = e2 - E sinh^2 s, or u = c + g sinh s).
+#include "blackhole/closed.h"
+#include "blackhole/oracle.h"
+
+#include <boost/math/quadrature/gauss_kronrod.hpp>
+#include <boost/multiprecision/cpp_bin_float.hpp>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <random>
+
+using namespace blackhole;
+using Exact = boost::multiprecision::cpp_bin_float_50;
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+const double pi = std::acos(-1.0);
+
+/// A ray in fifty digits, about the doubles as given.
+struct Witness {
+	Exact u, F2, B, kappa, r;
+	Exact e1[3], e2[3];
+	bool outward, outside;
+	Exact m, E, centre; // E: e3 - e2, or the imaginary part g of the pair; centre: e2, e3, or the real part
+	Witness(const Vec3& x, const Vec3& d) {
+		const Exact a = x.x, b = x.y, c = x.z, e = d.x, f = d.y, g = d.z;
+		const Exact n[3] = {b * g - c * f, c * e - a * g, a * f - b * e};
+		const Exact r2 = a * a + b * b + c * c, s = a * e + b * f + c * g, n2 = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
+		r = sqrt(r2);
+		u = 1 / r;
+		F2 = s * s / (r2 * n2);
+		outward = s >= 0;
+		outside = u < Exact(2) / 3;
+		B = F2 + u * u - u * u * u;
+		kappa = 1 - Exact(27) / 4 * B;
+		const Exact h = r * sqrt(n2), p[3] = {a, b, c};
+		for (int i = 0; i < 3; i++) {
+			e1[i] = p[i] / r;
+			const int j = (i + 1) % 3, k = (i + 2) % 3;
+			e2[i] = (n[j] * p[k] - n[k] * p[j]) / h;
+		}
+		m = sqrt(B); // above the root: Newton's method comes down to it
+		for (int i = 0; i < 400; i++) {
+			const Exact step = (m * m * (1 + m) - B) / (m * (3 * m + 2));
+			m -= step;
+			if (abs(step) < m * Exact(1e-44))
+				break;
+		}
+		const Exact D = (1 + m) * (1 - 3 * m);
+		if (kappa > 0) {
+			E = sqrt(D);
+			// e2 e3 = B / m, e2 + e3 = 1 + m
+			const Exact e3 = (1 + m + E) / 2;
+			centre = outside ? B / m / e3 : e3;
+		} else {
+			E = sqrt(-D) / 2;
+			centre = (1 + m) / 2;
+		}
+	}
+	bool escapes() const { return outside ? outward || kappa > 0 : outward && kappa < 0; }
+	bool turns() const { return kappa > 0 && outward != outside; }
+	// The variable of integration at y.
+	Exact s(const Exact& y) const {
+		if (kappa < 0)
+			return asinh((y - centre) / E);
+		const Exact q = (outside ? centre - y : y - centre) / E;
+		return q > 0 ? asinh(sqrt(q)) : Exact(0);
+	}
+	template <typename Real> Real integral(const Exact& from, const Exact& to) const {
+		const Real M(m), C(centre), G(E), k = kappa < 0 ? 1 : 2;
+		const bool pair = kappa < 0, minus = outside;
+		auto f = [&](const Real& t) -> Real {
+			using std::sinh;
+			using std::sqrt;
+			const Real q = sinh(t);
+			const Real y = pair ? Real(C + G * q) : minus ? Real(C - G * q * q) : Real(C + G * q * q);
+			return k / sqrt(y + M);
+		};
+		const Real a(from < to ? from : to), b(from < to ? to : from), eps = std::numeric_limits<Real>::epsilon();
+		return a == b ? Real(0) : boost::math::quadrature::gauss_kronrod<Real, 61>::integrate(f, a, b, 9, sizeof(Real) > 16 ? Real(1e-24) : 512 * eps);
+	}
+	template <typename Real> Real swept(const Exact& y, bool after) const {
+		if (after && kappa > 0)
+			return integral<Real>(0, s(u)) + integral<Real>(0, s(y));
+		return integral<Real>(s(u), s(y));
+	}
+	/// Largest difference of the exit's direction and place.
+	template <typename Real> double error(double R, const Escape& e) const {
+		const Exact y = 1 / Exact(R) < u ? 1 / Exact(R) : u;
+		const Exact phi(swept<Real>(y, turns()));
+		const Exact f = y < u && outside && kappa > 0 ? F2 + (u - y) * (u + y - (u * u + u * y + y * y)) : B - y * y + y * y * y;
+		const Exact a = atan2(y, sqrt(f > 0 ? f : Exact(0)));
+		const double at[3] = {e.at.x, e.at.y, e.at.z}, tangent[3] = {e.tangent.x, e.tangent.y, e.tangent.z};
+		Exact worst = 0;
+		for (int i = 0; i < 3; i++) {
+			const Exact p = cos(phi) * e1[i] + sin(phi) * e2[i] - at[i];
+			const Exact q = cos(phi + a) * e1[i] + sin(phi + a) * e2[i] - tangent[i];
+			worst = std::max(worst, std::max(Exact(abs(p)), Exact(abs(q))));
+		}
+		return double(worst);
+	}
+};
+
+std::mt19937_64 random_bits(11);
+double uniform() { return std::uniform_real_distribution<double>(0, 1)(random_bits); }
+Vec3 any_direction() {
+	std::normal_distribution<double> n;
+	return unit({n(random_bits), n(random_bits), n(random_bits)});
+}
+/// A ray from radius r at an angle a off the outward radial, in general position.
+void place(double r, double a, Vec3& x, Vec3& d) {
+	const Vec3 e = any_direction(), t = unit(cross(e, any_direction()));
+	x = r * e;
+	d = (0.5 + uniform()) * (std::cos(a) * e + std::sin(a) * t);
+}
+double log_uniform(double lo, double hi) { return lo * std::pow(hi / lo, uniform()); }
+/// The angle off the outward radial of a ray of impact parameter b at r.
+double angle_of(double r, double b, bool outward) {
+	const double a = std::asin(std::min(1.0, b / r / std::sqrt(1 + b * b / (r * r * r))));
+	return outward ? a : pi - a;
+}
+
+struct Worst {
+	double error = 0, r = 0, R = 0, b = 0;
+	int rays = 0, captured = 0;
+	void print(const char* name) const {
+		std::printf("[ closed   ] %-44s %6d rays (%d captured): worst %.2g at r %.6g R %.3g b/b_c-1 %.2g\n", name, rays, captured,
+			error, r, R, b);
+	}
+};
+
+/// Compares one ray; outcome too.
+template <typename Real> void compare(Worst& w, const Vec3& x, const Vec3& d, double R) {
+	const Witness witness(x, d);
+	Escape e;
+	const bool out = escape(x, d, R, e);
+	ASSERT_EQ(out, witness.escapes());
+	ASSERT_EQ(out, classify(x, d) == Outcome::escaped);
+	w.rays++;
+	if (!out) {
+		w.captured++;
+		return;
+	}
+	ASSERT_TRUE(std::isfinite(e.phi) && std::isfinite(e.tangent.x));
+	const double error = witness.error<Real>(R, e);
+	if (!(error <= w.error))
+		w.error = error, w.r = length(x), w.R = R, w.b = double(1 / sqrt(witness.B)) / critical_b - 1;
+}
+
+template <typename Real, typename Ray> double regime(const char* name, int n, Ray ray) {
+	Worst w;
+	for (int i = 0; i < n && !testing::Test::HasFatalFailure(); i++) {
+		Vec3 x, d;
+		const double R = ray(x, d);
+		compare<Real>(w, x, d, R);
+	}
+	w.print(name);
+	return w.error;
+}
+
+double sphere(double r) {
+	const double k = uniform();
+	return k < 0.15 ? infinity : k < 0.25 ? std::max(r, 1.6) : std::max(r, 2.0) * std::min(1e12, log_uniform(1, 1e6));
+}
+
+} // namespace
+
+TEST(Closed, AnyDirectionFromAnywhere) {
+	auto ray = [](Vec3& x, Vec3& d) {
+		const double r = 1.0001 + log_uniform(1e-4, 1e9);
+		place(r, std::acos(1 - 2 * uniform()), x, d);
+		return sphere(r);
+	};
+	EXPECT_LT(regime<long double>("any direction, r 1.0002 to 1e9", 4000, ray), 1e-12);
+	EXPECT_LT(regime<Exact>("the same in 50 digits", 100, ray), 1e-12);
+}
+
+TEST(Closed, TowardsTheHole) {
+	auto ray = [](Vec3& x, Vec3& d) {
+		const double r = log_uniform(1.51, 1e9);
+		place(r, angle_of(r, std::min(6 * uniform(), 0.999 * r / std::sqrt(1 - 1 / r)), uniform() < 0.2), x, d);
+		return sphere(r);
+	};
+	EXPECT_LT(regime<long double>("b from 0 to 6", 4000, ray), 1e-12);
+	EXPECT_LT(regime<Exact>("the same in 50 digits", 100, ray), 1e-12);
+}
+
+TEST(Closed, AllImpactParameters) {
+	auto ray = [](Vec3& x, Vec3& d) {
+		const double b = log_uniform(1e-12, 1e6), r = std::max(1.51, b) * (1 + log_uniform(1e-9, 1e3));
+		place(r, angle_of(r, b, uniform() < 0.5), x, d);
+		return sphere(r);
+	};
+	EXPECT_LT(regime<long double>("b from 1e-12 to 1e6", 3000, ray), 1e-12);
+	EXPECT_LT(regime<Exact>("the same in 50 digits", 60, ray), 1e-12);
+}
+
+TEST(Closed, InsideTheHorizon) {
+	auto ray = [](Vec3& x, Vec3& d) {
+		const double r = log_uniform(1e-3, 1);
+		// Just below the escaping b mostly; falling observers see all of it.
+		place(r, angle_of(r, critical_b * std::min(1.2, log_uniform(1e-3, 2)), true), x, d);
+		return sphere(r);
+	};
+	EXPECT_LT(regime<long double>("starts inside the horizon", 1500, ray), 1e-12);
+	EXPECT_LT(regime<Exact>("the same in 50 digits", 60, ray), 1e-12);
+}
+
+TEST(Closed, NearTheCriticalImpactParameter) {
+	for (double far : {1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14}) {
+		auto ray = [far](Vec3& x, Vec3& d) {
+			double r = uniform() < 0.3 ? 1.02 + 0.4 * uniform() : log_uniform(1.6, 1e4);
+			place(r, angle_of(r, critical_b * (1 + far * (2 * uniform() - 1)), r < 1.5 || uniform() < 0.2), x, d);
+			return sphere(r);
+		};
+		char name[80];
+		std::snprintf(name, sizeof name, "|b/b_c - 1| < %g", far);
+		EXPECT_LT(regime<Exact>(name, 30, ray), 1e-12);
+	}
+}
