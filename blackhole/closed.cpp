@@ -201,4 +201,102 @@ bool escape(const Vec3& x, const Vec3& d, double R, Escape& out) {
 	return true;
 }
 
+// The orbit is symmetric about a turning point, e2 or e3, or formally about -m; t is the angle from there. With Jacobi's
+// functions of rate t (Byrd & Friedman, Handbook of Elliptic Integrals, 1971, 233.00, 238.00, 239.00, moved to the turning
+// point so that its neighbourhood keeps its digits; k'^2 from D, so that it has them near b_c)
+//   u = e2 - size (sn/dn)^2   for b > b_c outside the barrier,  rate = sqrt(e3 + m) / 2,  k'^2 = E / (e3 + m)
+//   u = e3 + size (sn/cn)^2   for b > b_c inside it,            rate and k the same
+//   u = -m + size (1 - cn) / (1 + cn)   for b < b_c,            rate = sqrt(size),  size^2 = f'(-m) = m (3 m + 2)
+Exact_Orbit::Exact_Orbit(const Vec3& x, const Vec3& d) : launch_(x, d) {
+	const Launch& l = launch_;
+	e1_ = l.u * x;
+	if (radial()) {
+		e2_ = {0, 0, 0};
+		return;
+	}
+	e2_ = l.across * cross(l.axis, x);
+	cubic_ = Cubic(l.B, l.kappa);
+	const double m = cubic_.m, qx = std::sqrt(l.F2 / (l.u + m));
+	const bool outside = l.u < 2.0 / 3;
+	double kc2; // k'^2
+	if (l.kappa > 0) {
+		turns_ = l.outward != outside;
+		const double E = std::sqrt(cubic_.D), e3 = 0.5 * (1 + m + E), e2 = l.B / (m * e3);
+		turning_ = 0.5 * sweep(cubic_, l.u, qx, l.u, qx, true);
+		start_ = turns_ ? -turning_ : turning_;
+		kc2 = E / (e3 + m);
+		centre_ = outside ? e2 : e3;
+		size_ = (centre_ + m) * kc2;
+		rate_ = 0.5 * std::sqrt(e3 + m);
+	} else {
+		size_ = std::sqrt(m * (3 * m + 2));
+		start_ = sweep(cubic_, l.u, qx, -m, size_, false);
+		way_ = l.outward ? -1 : 1;
+		centre_ = -m;
+		kc2 = -cubic_.D / (8 * size_ * (size_ + 0.5 + 1.5 * m));
+		rate_ = std::sqrt(size_);
+	}
+	// Descending Landen transformation (DLMF 22.7(i)) until the modulus no longer matters.
+	double k2 = 1 - kc2, kc = std::sqrt(kc2), mean = 1;
+	while (k2 > 1e-17 && levels_ < 14) {
+		const double k = k2 / ((1 + kc) * (1 + kc));
+		mean *= 0.5 * (1 + kc);
+		k_[levels_] = k;
+		k1_[levels_++] = 2 * kc / (1 + kc);
+		k2 = k * k;
+		kc = 2 * std::sqrt(kc) / (1 + kc);
+	}
+	base_ = rate_ * mean;
+	quarter_ = 1.57079632679489661923 / base_;
+}
+
+double Exact_Orbit::swept(double y, bool after) const {
+	const double m = cubic_.m, x = launch_.u;
+	const double qx = std::sqrt(launch_.F2 / (x + m)), qy = std::sqrt(value(cubic_, x, launch_.F2, y) / (y + m));
+	return sweep(cubic_, x, qx, y, qy, after && turns_);
+}
+
+double Exact_Orbit::end(double R) const {
+	if (radial())
+		return 0;
+	if (launch_.outcome == Outcome::escaped)
+		return swept(std::min(1 / R, launch_.u), turns_);
+	if (launch_.u >= 1 && !(turns_ && centre_ < 1))
+		return 0;
+	return swept(1, turns_);
+}
+
+Exact_Orbit::State Exact_Orbit::at(double phi) const {
+	double t = start_ + way_ * phi;
+	const double sign = t < 0 ? -way_ : way_;
+	t = std::fabs(t);
+	const bool far = cubic_.kappa < 0 && t > quarter_; // nearer to u = infinity, about which the orbit is symmetric too
+	if (far)
+		t = 2 * quarter_ - t;
+	const Vec2 last = circle(base_ * t);
+	double cn = last.x, sn = last.y, dn = 1;
+	for (int i = levels_ - 1; i >= 0; i--) {
+		const double k = k_[i], q = 1 / (1 + k * sn * sn);
+		const double next = (k1_[i] + k * cn * cn) * q;
+		cn *= dn * q;
+		sn *= (1 + k) * q;
+		dn = next;
+	}
+	const double rate = sign * rate_;
+	if (cubic_.kappa < 0) {
+		if (far) {
+			const double c = (1 + cn) / sn;
+			return {centre_ + size_ * c * c, 2 * rate * size_ * dn * c * c / sn};
+		}
+		const double c = 1 / (1 + cn);
+		return {centre_ + size_ * sn * sn * c * c, 2 * rate * size_ * sn * dn * c * c};
+	}
+	if (launch_.u < 2.0 / 3) {
+		const double q = 1 / dn, sd = sn * q;
+		return {centre_ - size_ * sd * sd, -2 * rate * size_ * sd * cn * q * q};
+	}
+	const double q = 1 / cn, sc = sn * q;
+	return {centre_ + size_ * sc * sc, 2 * rate * size_ * sc * dn * q * q};
+}
+
 } // namespace blackhole

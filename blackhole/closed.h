@@ -58,38 +58,46 @@ class Exact_Orbit {
 public:
 	struct State {
 		double u;  ///< 1 / r
-		double du; ///< du/dphi; the direction is -du, u along and across the radial, to scale
+		double du; ///< du/dphi: the direction has parts -du along the radial and u across it, but for its length
 	};
 
-	/// x and d as for classify(), not radial: a radial ray sweeps no angle (see radial()).
+	/// x and d as for classify(). A radial ray sweeps no angle: nothing but radial() and outcome() is of use then,
+	/// nor is it for b < 1e-18, where the ray is as good as straight.
 	Exact_Orbit(const Vec3& x, const Vec3& d);
 
-	bool radial() const { return launch_.radial; }
+	bool radial() const { return launch_.radial || launch_.B > 1e36; }
 	Outcome outcome() const { return launch_.outcome; }
-	/// Whether the orbit has a turning point ahead of the start.
+	/// Whether a turning point lies ahead of the start, and the angle swept up to it.
 	bool turns() const { return turns_; }
-	/// Angle swept on reaching u: before the turning point, or after it (the only one that exists if R is on the way out of
-	/// an escaping ray that came in; at the same u both exist). u must lie on that leg.
+	double turning_angle() const { return turning_; }
+	/// The plane as in Orbit: the point at phi is (cos phi e1 + sin phi e2) / u.
+	Vec3 e1() const { return e1_; }
+	Vec3 e2() const { return e2_; }
+
+	/// Angle swept on reaching u, before the turning point or after it; u must lie on that leg. As exact as escape().
 	double swept(double u, bool after) const;
-	/// The end of the path: angle swept on leaving the sphere of radius R, or on reaching the horizon. A captured ray
-	/// that starts inside the horizon ends where it comes back to it, at once if it never is outside.
+	/// The end of the path: angle swept on leaving the sphere of radius R (as for escape()), or on reaching the horizon. A
+	/// captured ray that starts inside the horizon ends where it falls back into it; 0 if it never was outside.
 	double end(double R) const;
 
-	/// phi in [0, end]. Error of u below 1e-14 (u + |du| (1 + phi)) times what a start wrong in its last digit makes of it:
-	/// it grows as exp(turning angle) near b_c.
+	/// phi in [0, end]. Error of u below 1e-14 (u + (1 + T) |du|), T the angle up to the turning point or its like, times what
+	/// the last digit of phi and of the start make of it: near b_c that grows as exp(phi).
 	State at(double phi) const;
 
 private:
 	Launch launch_;
 	Cubic cubic_;
+	Vec3 e1_, e2_;
 	bool turns_ = false;
-	double k1_[12], k1c_[12]; // Landen's moduli and one minus them
+	double turning_ = 0;
+	double start_ = 0; // phi at the start, counted from the symmetric point of the orbit (see closed.cpp), and
+	int way_ = 1;      // which way it counts from there
+	double centre_ = 0, size_ = 0;
+	double rate_ = 0;    // Jacobi's argument for each radian
+	double quarter_ = 0; // K / rate_
+	double base_ = 0;    // Landen's last argument for each radian
 	int levels_ = 0;
-	double rate_ = 0;  // Jacobi's argument for each radian
-	double base_ = 0;  // the same, of Landen's last level (a plain angle)
-	double quarter_ = 0; // the real quarter period K over rate_: radians
-	double start_ = 0; // phi at the start, counted from the nearest place where the orbit is symmetric
-	double size_ = 0;
+	double k_[14], k1_[14]; // Landen's moduli k and 1 - k, from the first after the orbit's own
 };
 
 } // namespace blackhole

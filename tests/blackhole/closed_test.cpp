@@ -225,3 +225,78 @@ TEST(Closed, NearTheCriticalImpactParameter) {
 		EXPECT_LT(regime<Exact>(name, 30, ray), 1e-12);
 	}
 }
+
+namespace {
+
+/// The orbit at phi = the witness's angle swept at u, on a leg; the error over what a wrong last digit may do:
+/// of phi, of the whole phase, of the start.
+double orbit_error(const Exact_Orbit& o, const Witness& w, const Exact& y, bool after) {
+	const Exact phi = w.swept<Exact>(y, after);
+	const auto s = o.at(double(phi));
+	const Exact f = w.B - y * y + y * y * y;
+	const double du = double(sqrt(f > 0 ? f : Exact(0))) * (w.outward != after ? -1 : 1);
+	// Second derivative u'' = 1.5 u^2 - u, for what is left of the error of phi at a turning point.
+	const double u = double(y), dd = std::fabs(1.5 * u * u - u), scale = 1 + double(phi) + o.turning_angle();
+	return std::max(std::fabs(double(s.u - y)) / (u + scale * (std::fabs(du))), std::fabs(s.du - du) / (std::fabs(du) + scale * dd + u));
+}
+
+template <typename Ray> double orbit_regime(const char* name, int n, Ray ray) {
+	double worst = 0, worst_r = 0, worst_b = 0, worst_end = 0, worst_phi = 0;
+	for (int i = 0; i < n; i++) {
+		Vec3 x, d;
+		const double R = ray(x, d);
+		const Witness w(x, d);
+		const Exact_Orbit o(x, d);
+		EXPECT_EQ(o.outcome() == Outcome::escaped, w.escapes());
+		EXPECT_EQ(o.turns(), w.turns());
+		if (o.outcome() == Outcome::escaped) {
+			Escape e;
+			EXPECT_TRUE(escape(x, d, R, e));
+			EXPECT_EQ(o.end(R), e.phi);
+		}
+		for (int j = 0; j < 4; j++) {
+			// Places on either leg: between the start and the turning point, or the turning point and the end.
+			const bool after = w.turns() && j >= 2;
+			Exact end = o.outcome() == Outcome::escaped ? 1 / Exact(R) : Exact(w.u > 1 ? w.u : Exact(1));
+			if (w.turns() && (!after || w.u > 1))
+				end = w.centre;
+			const Exact from = after ? w.centre : w.u;
+			const Exact y = from + (end - from) * Exact(j == 3 ? 1.0 : uniform());
+			const double error = orbit_error(o, w, y, after);
+			if (!(error <= worst))
+				worst = error, worst_r = length(x), worst_b = double(1 / sqrt(w.B)) / critical_b - 1, worst_phi = double(w.swept<Exact>(y, after));
+		}
+		(void)worst_end;
+	}
+	std::printf("[ closed   ] u(phi), %-40s %5d rays: worst %.2g at r %.6g b/b_c-1 %.2g phi %.3g\n", name, n, worst, worst_r, worst_b, worst_phi);
+	return worst;
+}
+
+} // namespace
+
+TEST(Exact_Orbit, FollowsThePath) {
+	EXPECT_LT(orbit_regime("towards the hole", 100, [](Vec3& x, Vec3& d) {
+		const double r = log_uniform(1.51, 1e4);
+		place(r, angle_of(r, std::min(6 * uniform(), 0.999 * r / std::sqrt(1 - 1 / r)), uniform() < 0.2), x, d);
+		return sphere(r);
+	}), 1e-13);
+	EXPECT_LT(orbit_regime("any direction", 100, [](Vec3& x, Vec3& d) {
+		const double r = 1.0001 + log_uniform(1e-4, 1e6);
+		place(r, std::acos(1 - 2 * uniform()), x, d);
+		return sphere(r);
+	}), 1e-13);
+	EXPECT_LT(orbit_regime("starts inside the horizon", 60, [](Vec3& x, Vec3& d) {
+		const double r = log_uniform(1e-3, 1);
+		place(r, angle_of(r, critical_b * std::min(1.2, log_uniform(1e-3, 2)), true), x, d);
+		return sphere(r);
+	}), 1e-13);
+	for (double far : {1e-3, 1e-6, 1e-9, 1e-12, 1e-14}) {
+		char name[80];
+		std::snprintf(name, sizeof name, "|b/b_c - 1| < %g", far);
+		EXPECT_LT(orbit_regime(name, 30, [far](Vec3& x, Vec3& d) {
+			const double r = uniform() < 0.3 ? 1.02 + 0.4 * uniform() : log_uniform(1.6, 1e4);
+			place(r, angle_of(r, critical_b * (1 + far * (2 * uniform() - 1)), r < 1.5 || uniform() < 0.2), x, d);
+			return sphere(r);
+		}), 1e-13 + 1e-14 / far);
+	}
+}
