@@ -20,7 +20,7 @@ Quad root(Quad a) {
 
 // F2, B and kappa. With w = u - 2/3, 4/27 - u^2 + u^3 = w^2 (u + 1/3), so kappa needs neither b nor its critical value.
 // Returns whether T had the digits: by the size of what kappa's rounding errors are, over kappa.
-template <typename T> bool measure(const Vec3& x, const Vec3& d, Launch& l) {
+template <typename T> inline bool measure(const Vec3& x, const Vec3& d, Launch& l) {
 	const T a = x.x, b = x.y, c = x.z, e = d.x, f = d.y, g = d.z;
 	const T i = b * g - c * f, j = c * e - a * g, k = a * f - b * e;
 	const T r2 = a * a + b * b + c * c, s = a * e + b * f + c * g, n2 = i * i + j * j + k * k;
@@ -49,7 +49,7 @@ template <typename T> bool measure(const Vec3& x, const Vec3& d, Launch& l) {
 }
 
 // A root of m^2 (1 + m) = B, with s = sqrt(B); Halley's method, from a fit of m/s good to 7e-6.
-double negative_root(double B, double s) {
+inline double negative_root(double B, double s) {
 	double m;
 	int rounds = 1;
 	if (s < 0.77) {
@@ -70,7 +70,7 @@ double negative_root(double B, double s) {
 }
 
 // f at y for a ray that starts at x: of the forms of f, the one without cancellation.
-double value(const Cubic& c, double x, double F2, double y) {
+inline double value(const Cubic& c, double x, double F2, double y) {
 	if (c.kappa > 0 && x < 2.0 / 3)
 		return std::max(0.0, F2 + (x - y) * (x + y - (x * x + x * y + y * y)));
 	const double w = y - 2.0 / 3;
@@ -82,8 +82,9 @@ double value(const Cubic& c, double x, double F2, double y) {
 // Carlson's integral of the first kind, from its arguments X1 (at the root -m), and the sum T and product N of the other
 // two, real or conjugate. Duplication (DLMF 19.26.18) with the pair kept as T and N, unscaled, so that with w the mean of
 // the arguments E2 w^2 and E3 w^3 stay those of the cubic (about its inflexion at 1/3): -1/3 and 2/27 - B.
-// The series is DLMF 19.19.7 with a = 1/2, c = 3/2, to the eleventh order.
-double carlson(double X1, double T, double N, double factor, double B) {
+// The series is DLMF 19.19.7 with a = 1/2, c = 3/2, to the eleventh order; what is left out, 6e-6 / w^12, decides how
+// far to go.
+inline double carlson(double X1, double T, double N, double factor, double B) {
 	const double beta = 2.0 / 27 - B, limit = std::fabs(beta) * (27 * 1500);
 	double w3 = X1 + T;
 	while (w3 < 18 || w3 * w3 * w3 < limit) {
@@ -110,7 +111,7 @@ double carlson(double X1, double T, double N, double factor, double B) {
 //   U2 - U3 = E / S,  U1^2 = U2^2 + e2 + m,
 // without cancellation, all real for complex pairs too, and signed (U3 < 0 beyond half a period), so that one first
 // duplication, lambda = U2 U3 + U1 S, brings any angle into Carlson's range.
-double sweep(const Cubic& c, double x, double qx, double y, double qy, bool over) {
+inline double sweep(const Cubic& c, double x, double qx, double y, double qy, bool over) {
 	const double ax = std::sqrt(x + c.m), ay = std::sqrt(y + c.m), a = ax + ay, dxy = std::fabs(x - y), K2 = 2 * qx * qy;
 	const double G = std::max(x, y) > 1 ? 2 * x * y - (1 + c.m) * (x + y - 2 * c.m) : qx * qx + qy * qy - dxy * dxy;
 	double P, M2, U1; // S^2, (U2 - U3)^2
@@ -132,13 +133,15 @@ double sweep(const Cubic& c, double x, double qx, double y, double qy, bool over
 
 // cos and sin of 0 <= a < 1e5 to 1e-16, in a third of the C library's instructions: reduced by Cody and Waite's method (pi/2
 // in two parts), Taylor's series to where they end in double precision on [-pi/4, pi/4] (terms of the 16th and 17th order).
-Vec2 circle(double a) {
+inline Vec2 circle(double a) {
 	const int k = static_cast<int>(a * 0.63661977236758134 + 0.5);
 	const double x = (a - k * 1.57079632673412561417) - k * 6.07710050650619224932e-11, x2 = x * x, x4 = x2 * x2;
-	const double s = (-1.0 / 6 + x2 * (1.0 / 120)) + x4 * ((-1.0 / 5040 + x2 * (1.0 / 362880)) +
-		x4 * ((-1.0 / 39916800 + x2 * (1.0 / 6227020800)) - x4 * (1.0 / 1307674368000)));
-	const double c = (1.0 / 24 - x2 * (1.0 / 720)) + x4 * ((1.0 / 40320 - x2 * (1.0 / 3628800)) +
-		x4 * ((1.0 / 479001600 - x2 * (1.0 / 87178291200)) + x4 * (1.0 / 20922789888000)));
+	const double s =
+		(-1.0 / 6 + x2 * (1.0 / 120)) + x4 * ((-1.0 / 5040 + x2 * (1.0 / 362880)) +
+												 x4 * ((-1.0 / 39916800 + x2 * (1.0 / 6227020800)) - x4 * (1.0 / 1307674368000)));
+	const double c = (1.0 / 24 - x2 * (1.0 / 720)) +
+					 x4 * ((1.0 / 40320 - x2 * (1.0 / 3628800)) +
+							  x4 * ((1.0 / 479001600 - x2 * (1.0 / 87178291200)) + x4 * (1.0 / 20922789888000)));
 	const double sine = x + x * x2 * s, cosine = 1 - (0.5 * x2 - x4 * c);
 	const Vec2 q = k & 1 ? Vec2{-sine, cosine} : Vec2{cosine, sine};
 	return k & 2 ? Vec2{-q.x, -q.y} : q;

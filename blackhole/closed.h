@@ -27,14 +27,14 @@ struct Cubic {
 /// What a ray is, from its start alone, to the last digits about the doubles as given: nearly radial, nearly
 /// critical and deep starts are taken in long double or quadruple precision.
 struct Launch {
-	Vec3 axis;      ///< x cross d, d perhaps rescaled; only its direction is of use
-	double r, u;    ///< radius of the start, 1 / r
-	double F2;      ///< f(u) = u^2 cot^2 a, a the angle off the outward radial
-	double across;  ///< 1 / (r |axis|)
-	double B;       ///< as in Cubic
-	double kappa;   ///< as in Cubic; its sign agrees with the outcome
-	bool outward;   ///< whether r grows at first; so at a turning point outside 1.5, not so at one inside
-	bool radial;    ///< b = 0 or below 1e-30 r: B and F2 mean nothing then
+	Vec3 axis;       ///< x cross d, d perhaps rescaled; only its direction is of use
+	double r, u;     ///< radius of the start, 1 / r
+	double F2;       ///< f(u) = u^2 cot^2 a, a the angle off the outward radial
+	double across;   ///< 1 / (r |axis|)
+	double B;        ///< as in Cubic
+	double kappa;    ///< as in Cubic; its sign agrees with the outcome
+	bool outward;    ///< whether r grows at first; so at a turning point outside 1.5, not so at one inside
+	bool radial;     ///< b = 0 or below 1e-30 r: B and F2 mean nothing then
 	Outcome outcome; ///< as classify() has it
 
 	/// x and d as for classify(); |x| in [1e-6, 1e15].
@@ -49,8 +49,9 @@ struct Escape {
 };
 
 /// The exit of a ray from x (|x| <= R; rounding beyond is harmless) along d; R > 1.5 may be infinite. Returns false, out
-/// unchanged, if classify() has it captured. Error of phi and directions below 1e-12 rad, at b_c too, but for rays that also
-/// start or end within 1e-4 of the photon sphere: there the error is that of the start's own last digit.
+/// unchanged, if classify() has it captured. Error of phi and of the directions below 1e-12 rad, at b_c too, where the start and
+/// R leave it that: their own last digits turn a ray by 2e-16 / sqrt(f), f = (du/dphi)^2 there, so rays that are near the photon
+/// sphere and nearly critical, or graze the sphere of radius R where they start, are known no better.
 bool escape(const Vec3& x, const Vec3& d, double R, Escape& out);
 
 /// The whole orbit of a ray as a function of the angle swept, by Jacobi's functions.
@@ -80,8 +81,8 @@ public:
 	/// captured ray that starts inside the horizon ends where it falls back into it; 0 if it never was outside.
 	double end(double R) const;
 
-	/// phi in [0, end]. Error of u below 1e-14 (u + (1 + T) |du|), T the angle up to the turning point or its like, times what
-	/// the last digit of phi and of the start make of it: near b_c that grows as exp(phi).
+	/// phi in [0, end]. Errors below 1e-13 (u + (1 + phi) |du|) of u, and 1e-13 (u + |du| + (1 + phi) |u''|) of du, near b_c
+	/// too; but phi itself is a double, and one last digit of it, or of the start, grows as exp(phi) while a ray lingers there.
 	State at(double phi) const;
 
 private:

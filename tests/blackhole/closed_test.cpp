@@ -237,11 +237,12 @@ double orbit_error(const Exact_Orbit& o, const Witness& w, const Exact& y, bool 
 	const double du = double(sqrt(f > 0 ? f : Exact(0))) * (w.outward != after ? -1 : 1);
 	// Second derivative u'' = 1.5 u^2 - u, for what is left of the error of phi at a turning point.
 	const double u = double(y), dd = std::fabs(1.5 * u * u - u), scale = 1 + double(phi) + o.turning_angle();
-	return std::max(std::fabs(double(s.u - y)) / (u + scale * (std::fabs(du))), std::fabs(s.du - du) / (std::fabs(du) + scale * dd + u));
+	return std::max(
+		std::fabs(double(s.u - y)) / (u + scale * (std::fabs(du))), std::fabs(s.du - du) / (std::fabs(du) + scale * dd + u));
 }
 
 template <typename Ray> double orbit_regime(const char* name, int n, Ray ray) {
-	double worst = 0, worst_r = 0, worst_b = 0, worst_end = 0, worst_phi = 0;
+	double worst = 0, worst_r = 0, worst_b = 0, worst_phi = 0;
 	for (int i = 0; i < n; i++) {
 		Vec3 x, d;
 		const double R = ray(x, d);
@@ -264,39 +265,150 @@ template <typename Ray> double orbit_regime(const char* name, int n, Ray ray) {
 			const Exact y = from + (end - from) * Exact(j == 3 ? 1.0 : uniform());
 			const double error = orbit_error(o, w, y, after);
 			if (!(error <= worst))
-				worst = error, worst_r = length(x), worst_b = double(1 / sqrt(w.B)) / critical_b - 1, worst_phi = double(w.swept<Exact>(y, after));
+				worst = error, worst_r = length(x), worst_b = double(1 / sqrt(w.B)) / critical_b - 1,
+				worst_phi = double(w.swept<Exact>(y, after));
 		}
-		(void)worst_end;
 	}
-	std::printf("[ closed   ] u(phi), %-40s %5d rays: worst %.2g at r %.6g b/b_c-1 %.2g phi %.3g\n", name, n, worst, worst_r, worst_b, worst_phi);
+	std::printf("[ closed   ] u(phi), %-40s %5d rays: worst %.2g at r %.6g b/b_c-1 %.2g phi %.3g\n", name, n, worst, worst_r,
+		worst_b, worst_phi);
 	return worst;
 }
 
 } // namespace
 
+TEST(Closed, RadialRays) {
+	for (double scale : {1.0, 1e200, 1e-200})
+		for (double r : {1e-3, 0.5, 1.0, 1.2, 1.5, 3.0, 1e9}) {
+			Escape e;
+			ASSERT_TRUE(escape({0, r, 0}, {0, scale, 0}, infinity, e));
+			EXPECT_EQ(e.phi, 0);
+			EXPECT_EQ(e.tangent.y, 1);
+			EXPECT_EQ(e.at.y, 1);
+			EXPECT_FALSE(escape({0, r, 0}, {0, -scale, 0}, infinity, e) && r >= 1);
+			EXPECT_TRUE(Exact_Orbit({0, r, 0}, {0, scale, 0}).radial());
+			EXPECT_EQ(Exact_Orbit({0, r, 0}, {0, scale, 0}).end(1e10), 0);
+			// And next to radial: the angle swept is b (u - u_R).
+			for (double s : {1e-12, 1e-17, 1e-25, 1e-40, 1e-100, 1e-160, 1e-300}) {
+				ASSERT_TRUE(escape({0, r, 0}, {scale > 1 ? 0 : scale * s, scale, 0}, 1e10, e));
+				EXPECT_NEAR(e.phi, 0, 1e-11);
+				EXPECT_NEAR(e.tangent.y, 1, 1e-15);
+				if (s > 1e-29 && scale == 1) {
+					EXPECT_NEAR(e.phi / (r * s * (1 / r - 1e-10)), 1, 1e-10) << r << " " << s;
+				}
+			}
+		}
+}
+
+TEST(Closed, StartsAtTheTurningPoint) {
+	Worst w;
+	for (double r : {1.5000001, 1.51, 2.0, 3.0, 10.0, 1e3, 1e9})
+		for (double R : {r * 1.0000001, 1.01 * r, 2 * r, 1e3 * r, infinity})
+			for (double off : {0.0, 1e-300, 1e-20, -1e-20, 1e-12, -1e-12, 1e-8, -1e-8}) {
+				Worst one;
+				compare<Exact>(one, {0, r, 0}, {0, off, 2}, R);
+				EXPECT_LT(one.error, 3e-15 / std::min(1e-3, std::min(r / 1.5 - 1, std::sqrt(R / r - 1))))
+					<< r << " " << R << " " << off;
+				w.rays++, w.error = std::max(w.error, one.error);
+			}
+	w.print("starts at the turning point");
+}
+
+// Where a ray starts or ends on the sphere of radius R: no sweep, the ray's own direction.
+TEST(Closed, StartsOnTheSphere) {
+	for (double r : {1.6, 3.0, 100.0, 1e9}) {
+		Escape e;
+		const Vec3 x{0, r, 0}, d = unit({0, 1, 1});
+		for (double R : {r, r * (1 - 1e-15)}) {
+			ASSERT_TRUE(escape(x, d, R, e));
+			EXPECT_NEAR(e.phi, 0, 1e-14);
+			EXPECT_LT(length(e.tangent - d), 1e-15);
+		}
+		// Tangential, and into the sphere by as little as the last digit.
+		for (double s : {0.0, -1e-16, -1e-9}) {
+			ASSERT_TRUE(escape(x, {0, s, 1}, r, e));
+			EXPECT_NEAR(e.phi, 0, 1e-7);
+		}
+	}
+}
+
+TEST(Closed, AroundThePhotonSphere) {
+	Worst w;
+	double relative = 0;
+	for (int i = 0; i < 300; i++) {
+		const double side = uniform() < 0.5 ? 1 : -1, r = uniform() < 0.1 ? 1.5 : 1.5 * (1 + side * log_uniform(1e-15, 1e-2));
+		Vec3 x, d;
+		const double a = pi / 2 - (r < 1.5 ? 1 : uniform() < 0.5 ? -1 : 1) * log_uniform(1e-15, 1);
+		place(r, a, x, d);
+		const double R = std::max(1.5 * (1 + (uniform() < 0.5 ? 1e-9 : log_uniform(1e-9, 1))), length(x));
+		Worst one;
+		compare<Exact>(one, x, d, R);
+		const Witness v(x, d);
+		// A last digit of u or of u_R is this much of an angle.
+		const double y = 1 / R, f = std::min(double(v.F2), double(v.B) - y * y + y * y * y);
+		const double digit = 2e-16 * (1 / std::sqrt(std::max(1e-30, f)) + 1);
+		relative = std::max(relative, one.error / digit);
+		w.rays++, w.captured += one.captured;
+		if (one.error > w.error)
+			w.error = one.error, w.r = r, w.R = R, w.b = one.b;
+	}
+	w.print("around the photon sphere");
+	std::printf("[ closed   ] ... over a last digit of r: %.3g\n", relative);
+	EXPECT_LT(relative, 1000);
+}
+
+// Single roundings across the critical direction: the outcome is classify()'s and nothing is lost.
+TEST(Closed, AtTheEdge) {
+	Worst w;
+	for (double r : {1000.0, 25.0, 3.0, 2.0, 1.5, 1.4, 1.01, 0.7}) {
+		const double k = (1.5 - r) * std::sqrt((r + 3) / (r * r * r + 6.75));
+		for (int i = -20; i <= 20; i++) {
+			double s = std::sqrt(1 - k * k);
+			for (int j = 0; j < std::abs(i); j++)
+				s = std::nextafter(s, i > 0 ? 2 : 0);
+			const Vec3 x{r, 0, 0}, d{k, s, 0};
+			if (r == 1.5 || uniform() < 0.3)
+				compare<Exact>(w, x, d, 100 * r);
+			const Exact_Orbit o(x, d);
+			const double end = o.end(1000 * r);
+			EXPECT_TRUE(std::isfinite(end));
+			EXPECT_TRUE(std::isfinite(o.at(0.5 * end).u));
+		}
+	}
+	w.print("single roundings about b_c");
+	EXPECT_LT(w.error, 1e-12);
+}
+
 TEST(Exact_Orbit, FollowsThePath) {
-	EXPECT_LT(orbit_regime("towards the hole", 100, [](Vec3& x, Vec3& d) {
-		const double r = log_uniform(1.51, 1e4);
-		place(r, angle_of(r, std::min(6 * uniform(), 0.999 * r / std::sqrt(1 - 1 / r)), uniform() < 0.2), x, d);
-		return sphere(r);
-	}), 1e-13);
-	EXPECT_LT(orbit_regime("any direction", 100, [](Vec3& x, Vec3& d) {
-		const double r = 1.0001 + log_uniform(1e-4, 1e6);
-		place(r, std::acos(1 - 2 * uniform()), x, d);
-		return sphere(r);
-	}), 1e-13);
-	EXPECT_LT(orbit_regime("starts inside the horizon", 60, [](Vec3& x, Vec3& d) {
-		const double r = log_uniform(1e-3, 1);
-		place(r, angle_of(r, critical_b * std::min(1.2, log_uniform(1e-3, 2)), true), x, d);
-		return sphere(r);
-	}), 1e-13);
+	EXPECT_LT(orbit_regime("towards the hole", 100,
+				  [](Vec3& x, Vec3& d) {
+					  const double r = log_uniform(1.51, 1e4);
+					  place(r, angle_of(r, std::min(6 * uniform(), 0.999 * r / std::sqrt(1 - 1 / r)), uniform() < 0.2), x, d);
+					  return sphere(r);
+				  }),
+		1e-13);
+	EXPECT_LT(orbit_regime("any direction", 100,
+				  [](Vec3& x, Vec3& d) {
+					  const double r = 1.0001 + log_uniform(1e-4, 1e6);
+					  place(r, std::acos(1 - 2 * uniform()), x, d);
+					  return sphere(r);
+				  }),
+		1e-13);
+	EXPECT_LT(orbit_regime("starts inside the horizon", 60,
+				  [](Vec3& x, Vec3& d) {
+					  const double r = log_uniform(1e-3, 1);
+					  place(r, angle_of(r, critical_b * std::min(1.2, log_uniform(1e-3, 2)), true), x, d);
+					  return sphere(r);
+				  }),
+		1e-13);
 	for (double far : {1e-3, 1e-6, 1e-9, 1e-12, 1e-14}) {
 		char name[80];
 		std::snprintf(name, sizeof name, "|b/b_c - 1| < %g", far);
-		EXPECT_LT(orbit_regime(name, 30, [far](Vec3& x, Vec3& d) {
-			const double r = uniform() < 0.3 ? 1.02 + 0.4 * uniform() : log_uniform(1.6, 1e4);
-			place(r, angle_of(r, critical_b * (1 + far * (2 * uniform() - 1)), r < 1.5 || uniform() < 0.2), x, d);
-			return sphere(r);
-		}), 1e-13 + 1e-14 / far);
+		EXPECT_LT(orbit_regime(name, 30,
+					  [far](Vec3& x, Vec3& d) {
+						  const double r = uniform() < 0.3 ? 1.02 + 0.4 * uniform() : log_uniform(1.6, 1e4);
+						  place(r, angle_of(r, critical_b * (1 + far * (2 * uniform() - 1)), r < 1.5 || uniform() < 0.2), x, d);
+						  return sphere(r);
+					  }),
+			1e-13 + 1e-14 / far);
 	}
 }
