@@ -41,7 +41,7 @@ template <typename T> inline bool measure(const Vec3& x, const Vec3& d, Launch& 
 	const T kappa = T(6.75) * (Q2 - F2);
 	l.across = double(across);
 	l.F2 = double(F2);
-	l.B = double(F2 + u * u * (1 - u));
+	l.B = std::max(1e-300, double(F2 + u * u * (1 - u))); // <= 0 if d had no energy: no ray at all, but no NaN either
 	l.kappa = double(kappa);
 	const T error = F2 * F2 * (1 + F2 * r2) + w * w * (1 + u * u * u * u);
 	constexpr double digits = sizeof(T) == sizeof(double) ? 400 : 8e5;
