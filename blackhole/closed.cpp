@@ -117,7 +117,7 @@ inline double sweep(const Cubic& c, double x, double qx, double y, double qy, bo
 	double P, M2, U1; // S^2, (U2 - U3)^2
 	if (over) {
 		M2 = (G + K2) / (a * a);
-		P = c.D / M2;
+		P = c.D * (a * a) / (G + K2); // not D / M2: two divisions at once
 		U1 = std::sqrt(0.25 * (P + M2) + 0.5 + 1.5 * c.m);
 	} else {
 		if (dxy == 0)
@@ -134,7 +134,7 @@ inline double sweep(const Cubic& c, double x, double qx, double y, double qy, bo
 // cos and sin of 0 <= a < 1e5 to 1e-16, in a third of the C library's instructions: reduced by Cody and Waite's method (pi/2
 // in two parts), Taylor's series to where they end in double precision on [-pi/4, pi/4] (terms of the 16th and 17th order).
 inline Vec2 circle(double a) {
-	const int k = static_cast<int>(a * 0.63661977236758134 + 0.5);
+	const int k = static_cast<int>((a + 0.78539816339744831) * 0.63661977236758134);
 	const double x = (a - k * 1.57079632673412561417) - k * 6.07710050650619224932e-11, x2 = x * x, x4 = x2 * x2;
 	const double s =
 		(-1.0 / 6 + x2 * (1.0 / 120)) + x4 * ((-1.0 / 5040 + x2 * (1.0 / 362880)) +
