@@ -2,7 +2,6 @@
 #include "blackhole/closed.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace blackhole {
 namespace {

@@ -81,7 +81,7 @@ public:
 	/// captured ray that starts inside the horizon ends where it falls back into it; 0 if it never was outside.
 	double end(double R) const;
 
-	/// phi in [0, end]. Errors below 1e-13 (u + (1 + phi) |du|) of u, and 1e-13 (u + |du| + (1 + phi) |u''|) of du, near b_c
+	/// phi in [0, end]. Errors below 5e-13 (u + (1 + phi) |du|) of u, and 5e-13 (u + |du| + (1 + phi) |u''|) of du, near b_c
 	/// too; but phi itself is a double, and one last digit of it, or of the start, grows as exp(phi) while a ray lingers there.
 	State at(double phi) const;
 
