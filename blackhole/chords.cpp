@@ -17,28 +17,26 @@ constexpr double ramp_nodes[] = {1.0 / 128, 1.0 / 32, 1.0 / 8, 1.0 / 2, 1};
 } // namespace
 
 Chords::Chords(const Path& path, double tolerance, bool ramp)
-	: path_(path), scale_(1 / std::sqrt(8 * share * tolerance)), ramp_(ramp) {
+	: path_(path), scale_(path.orbit().k * std::sqrt(1.5 * path.orbit().h / (8 * share * tolerance))), ramp_(ramp) {
 	load(0);
+	point_ = path.orbit().to_space(path.orbit().p);
+	tangent_ = unit(path.orbit().to_space(path.orbit().v));
 	if (path.started_inside() && path.emerged() == 0)
 		ended_ = true;
 	if (path.started_inside() && path.emerged() > 0) {
 		const std::vector<Node>& nodes = path.nodes();
-		while (i_ + 2 < nodes.size() && nodes[i_ + 1].lambda < path.emerged())
+		while (i_ + 2 < nodes.size() && nodes[i_ + 1].s < path.emerged())
 			load(i_ + 1);
-		t_ = (path.emerged() - nodes[i_].lambda) / (nodes[i_ + 1].lambda - nodes[i_].lambda);
+		t_ = (path.emerged() - nodes[i_].s) / (nodes[i_ + 1].s - nodes[i_].s);
 		piece_n_ = -(d0_ + 0.5 * (d1_ - d0_) * t_) * t_ * length_;
+		place();
 	}
-	const Piece piece(path.nodes()[i_], path.nodes()[i_ + 1]);
-	point_ = path.orbit().to_space(piece.at(t_));
-	tangent_ = unit(path.orbit().to_space(piece.tangent(t_)));
 }
 
-// sqrt(k / (8 t r)) at a node, in nodes per unit of length.
+// dN/ds at a node.
 double Chords::density(std::size_t node) const {
-	const Node& n = path_.nodes()[node];
-	const double v2 = dot(n.v, n.v), r2 = dot(n.p, n.p), r = std::sqrt(r2);
-	const double curvature = std::fabs(cross(n.v, n.a)) / (v2 * std::sqrt(v2));
-	return scale_ * std::sqrt(curvature / r);
+	const double u = path_.nodes()[node].u, b = path_.orbit().h;
+	return scale_ * u / std::sqrt(std::sqrt(1 + b * b * u * u * u));
 }
 
 void Chords::load(std::size_t i) {
@@ -49,7 +47,17 @@ void Chords::load(std::size_t i) {
 	const std::vector<Node>& nodes = path_.nodes();
 	d0_ = i == 0 ? density(0) : d1_;
 	d1_ = density(i + 1);
-	length_ = length(nodes[i + 1].p - nodes[i].p);
+	length_ = nodes[i + 1].s - nodes[i].s;
+}
+
+// Point and tangent where it stands.
+void Chords::place() {
+	const Node& from = path_.nodes()[i_];
+	const Orbit& orbit = path_.orbit();
+	const Piece piece(from, path_.nodes()[i_ + 1]);
+	const double phi = orbit.k * (from.s + t_ * length_), c = std::cos(phi), s = std::sin(phi), u = piece.at(t_);
+	point_ = orbit.point(u, c, s);
+	tangent_ = unit(orbit.velocity(u, piece.slope(t_) / length_, c, s));
 }
 
 // Moves to where N reaches target, or to the end.
@@ -86,11 +94,8 @@ bool Chords::next(Chord& chord) {
 	if (ended_) {
 		point_ = path_.end();
 		tangent_ = path_.end_tangent();
-	} else {
-		const Piece piece(path_.nodes()[i_], path_.nodes()[i_ + 1]);
-		point_ = path_.orbit().to_space(piece.at(t_));
-		tangent_ = unit(path_.orbit().to_space(piece.tangent(t_)));
-	}
+	} else
+		place();
 	chord.to = point_;
 	chord.tangent_to = tangent_;
 

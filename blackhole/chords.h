@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 /// A path as straight chords, as few as the tolerance allows.
 ///
-/// A chord over a length l of curvature k strays from the path by k l^2 / 8. Nodes are laid at equal steps of
-/// N = integral of sqrt(k / (8 t r)) dl, with t the share of the tolerance that is the chords': a smooth
-/// function of the path, so neighbouring rays get neighbouring chords.
+/// A chord over a length l of curvature c strays from the path by c l^2 / 8. Nodes are laid at equal steps of
+/// N = integral of sqrt(c / (8 t r)) dl, with t the share of the tolerance that is the chords': a smooth
+/// function of the path, so neighbouring rays get neighbouring chords. With c = (3/2) b^3 u^5 / |v|^3 and
+/// dl = |v| / (b u^2) dphi that is dN/dphi = sqrt((3/2) b / (8 t)) u (1 + b^2 u^3)^(-1/4).
 #ifndef BLACKHOLE_CHORDS_H
 #define BLACKHOLE_CHORDS_H
 
@@ -30,6 +31,7 @@ public:
 private:
 	double density(std::size_t node) const;
 	void advance(double target);
+	void place();
 
 	const Path& path_;
 	double scale_;
@@ -38,7 +40,7 @@ private:
 	double n_ = 0;           // N so far
 	double piece_n_ = 0;     // N at the start of the piece
 	double d0_ = 0, d1_ = 0; // density at its ends
-	double length_ = 0;      // its length
+	double length_ = 0;      // its length in s
 	int count_ = 0;
 	bool ramp_, ended_ = false;
 	Vec3 point_, tangent_;

@@ -16,16 +16,14 @@ constexpr const char* method_names[] = {"rk4"};
 /// Finds a method by name. Returns false if there is none.
 bool find_method(const char* name, Method& method);
 
-/// How the acceleration follows from the position; h2 is the square of the conserved h.
-inline Vec2 acceleration(Vec2 p, double h2) {
-	const double r2 = dot(p, p);
-	return (-1.5 * h2 / (r2 * r2 * std::sqrt(r2))) * p;
-}
+/// Binet's equation in the parameter s: d2u/ds2 = k^2 (3/2 u^2 - u).
+inline double acceleration(double u, double k2) { return k2 * u * (1.5 * u - 1); }
 
 /// What a method needs to know of a whole path: computed once for each ray.
 struct Plan {
-	double h2;    ///< square of the conserved h
-	double scale; ///< the method's own measure of how small its steps must be
+	double k2;   ///< square of the orbit's k
+	double b2;   ///< square of its impact parameter
+	double rate; ///< the method's own measure of how small its steps must be
 };
 
 /// A way to compute paths. start makes the plan (tolerance: radians, [1e-9, 0.1], of the whole path, as docs/manual.md

@@ -92,6 +92,9 @@ Orbit::Orbit(const Vec3& x, const Vec3& d) {
 	p = {r, 0};
 	v = {speed * radial, speed * tangential};
 	h = speed * hu;
+	k = std::min(h, 1.0);
+	u = 1 / r;
+	w = -v.x / std::max(h, 1.0);
 }
 
 } // namespace blackhole

@@ -8,6 +8,9 @@
 /// A null geodesic is the Cartesian orbit x'' = -(3/2) h^2 x / r^5, h = |x cross x'| (from Binet's
 /// u'' + u = (3/2) u^2; Misner, Thorne & Wheeler, Gravitation, 1973, section 25.6). Scaled to unit energy,
 /// |v|^2 = 1 + h^2 / r^3 and h is the impact parameter b.
+///
+/// Paths are followed in the orbit's plane, in Binet's variables: u = 1/r over the angle phi swept since the start. So that
+/// radial rays are no special case, the parameter is s = phi / k with k = min(b, 1): du/ds stays of the size of one for every b.
 #ifndef BLACKHOLE_ORBIT_H
 #define BLACKHOLE_ORBIT_H
 
@@ -37,11 +40,20 @@ struct Orbit {
 	Vec2 p;   ///< start, (r, 0)
 	Vec2 v;   ///< direction with |v|^2 = 1 + h^2 / r^3
 	double h; ///< impact parameter b
+	double k; ///< min(b, 1): phi = k s
+	double u; ///< 1 / r
+	double w; ///< du/ds at the start: dr/dlambda = -max(b, 1) du/ds
 
 	/// x: position, |x| > 0; d: direction, any length > 0, of positive energy (always so outside the horizon).
 	Orbit(const Vec3& x, const Vec3& d);
 
 	Vec3 to_space(Vec2 q) const { return q.x * e1 + q.y * e2; }
+	/// The point at u after the angle with this cosine and sine; and the velocity there (not of unit length).
+	Vec3 point(double u, double cosine, double sine) const { return to_space({cosine / u, sine / u}); }
+	Vec3 velocity(double u, double w, double cosine, double sine) const {
+		const double out = -(h > 1 ? h : 1) * w, across = h * u;
+		return to_space({out * cosine - across * sine, out * sine + across * cosine});
+	}
 };
 
 } // namespace blackhole

@@ -28,7 +28,7 @@ public:
 	Outcome outcome() const { return outcome_; }
 	/// Whether the ray started at or inside the horizon; then nothing can be hit before emerged().
 	bool started_inside() const { return inside_; }
-	/// The affine parameter at which it left the horizon; 0 if it did not start inside, or fell back before it was out
+	/// The parameter s at which it left the horizon; 0 if it did not start inside, or fell back before it was out
 	/// by as much as the tolerance can tell (started_inside() and captured).
 	double emerged() const { return emerged_; }
 
@@ -37,15 +37,21 @@ public:
 	const Orbit& orbit() const { return orbit_; }
 
 	/// Where the path ends and the unit tangent there.
-	Vec3 end() const { return orbit_.to_space(nodes_.back().p); }
-	Vec3 end_tangent() const { return unit(orbit_.to_space(nodes_.back().v)); }
+	Vec3 end() const {
+		const Node& n = nodes_.back();
+		return orbit_.point(n.u, std::cos(orbit_.k * n.s), std::sin(orbit_.k * n.s));
+	}
+	Vec3 end_tangent() const {
+		const Node& n = nodes_.back();
+		return unit(orbit_.velocity(n.u, n.w, std::cos(orbit_.k * n.s), std::sin(orbit_.k * n.s)));
+	}
 
 	/// Euclidean length, as the polyline through the nodes.
 	double length() const;
 	/// Angle swept around the hole's centre, radians, >= 0.
-	double swept() const;
-	/// The largest relative change of angular momentum, and of energy over the size of its terms, between start and end:
-	/// what the integrator did wrong, no more than a hint of the path's own error.
+	double swept() const { return orbit_.k * nodes_.back().s; }
+	/// The relative change of the energy, over the size of its terms, between start and end (the angular momentum cannot
+	/// change in these variables): what the integrator did wrong, no more than a hint of the path's own error.
 	double drift() const;
 	/// Whether the path had to be taken a hair to the side of b_c for the numbers to follow classify(); only
 	/// within 0.1 % of b_c.
@@ -53,14 +59,13 @@ public:
 
 private:
 	bool trace(const Settings& settings);
-	bool finish(const Node& last, double radius, bool outward);
+	bool finish(const Node& last, double u);
 
 	Orbit orbit_{{2, 0, 0}, {1, 0, 0}};
 	std::vector<Node> nodes_;
 	Outcome outcome_ = Outcome::escaped;
 	bool inside_ = false, nudged_ = false;
 	double emerged_ = 0;
-	int half_turns_ = 0;
 };
 
 } // namespace blackhole

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // All three ways to sample, and a density that varies.
 // Straight limit 0.06: methods 1 and 2 sample at random
+// Threads limit 0.5: methods 1 and 2 draw from a random sequence of each thread
 #include "world.inc"
 View(<0, 1, -14>, 0, 50) Hole(0) Sky()
 #macro Cloud(P, M) sphere { 0, 1.9 pigment { rgbt 1 } hollow
