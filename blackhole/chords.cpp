@@ -20,7 +20,7 @@ Chords::Chords(const Path& path, double tolerance, bool ramp)
 	: path_(path), scale_(path.orbit().k * std::sqrt(1.5 * path.orbit().h / (8 * share * tolerance))), ramp_(ramp) {
 	load(0);
 	point_ = path.orbit().to_space(path.orbit().p);
-	tangent_ = unit(path.orbit().to_space(path.orbit().v));
+	r_ = path.orbit().r;
 	if (path.started_inside() && path.emerged() == 0)
 		ended_ = true;
 	if (path.started_inside() && path.emerged() > 0) {
@@ -48,16 +48,16 @@ void Chords::load(std::size_t i) {
 	d0_ = i == 0 ? density(0) : d1_;
 	d1_ = density(i + 1);
 	length_ = nodes[i + 1].s - nodes[i].s;
+	curve_ = Piece(nodes[i], nodes[i + 1]);
 }
 
-// Point and tangent where it stands.
+// The point where it stands.
 void Chords::place() {
-	const Node& from = path_.nodes()[i_];
 	const Orbit& orbit = path_.orbit();
-	const Piece piece(from, path_.nodes()[i_ + 1]);
-	const double phi = orbit.k * (from.s + t_ * length_), c = std::cos(phi), s = std::sin(phi), u = piece.at(t_);
-	point_ = orbit.point(u, c, s);
-	tangent_ = unit(orbit.velocity(u, piece.slope(t_) / length_, c, s));
+	const double u = curve_.at(t_);
+	phi_ = orbit.k * (path_.nodes()[i_].s + t_ * length_);
+	r_ = 1 / u;
+	point_ = orbit.point(u, std::cos(phi_), std::sin(phi_));
 }
 
 // Moves to where N reaches target, or to the end.
@@ -88,23 +88,23 @@ bool Chords::next(Chord& chord) {
 	double target = count_;
 	if (ramp_)
 		target = count_ <= ramp_count ? ramp_nodes[count_ - 1] : count_ - ramp_count + 1;
-	advance(target);
+	const double r = r_, phi = phi_;
 	chord.from = point_;
-	chord.tangent_from = tangent_;
+	chord.at_from = {i_, t_};
+	advance(target);
 	if (ended_) {
 		point_ = path_.end();
-		tangent_ = path_.end_tangent();
+		r_ = 1 / path_.nodes().back().u;
+		phi_ = path_.swept();
 	} else
 		place();
 	chord.to = point_;
-	chord.tangent_to = tangent_;
+	chord.at_to = {i_, t_};
 
-	const double a = length(chord.from), b = length(chord.to);
-	const Vec3 along = chord.to - chord.from;
-	const double l2 = dot(along, along);
-	const double s = l2 > 0 ? -dot(chord.from, along) / l2 : 0;
-	chord.farthest = std::max(a, b);
-	chord.nearest = s > 0 && s < 1 ? length(chord.from + s * along) : std::min(a, b);
+	// The foot of the perpendicular on a chord between equal radii is at their cosine of half the angle; no chord comes nearer.
+	const double half = 0.5 * (phi_ - phi);
+	chord.farthest = std::max(r, r_);
+	chord.nearest = std::min(r, r_) * std::max(0.0, 1 - 0.5 * half * half);
 	return true;
 }
 

@@ -13,11 +13,10 @@
 namespace blackhole {
 
 struct Chord {
-	Vec3 from, to;     ///< on the path
-	Vec3 tangent_from; ///< the path's unit tangents there
-	Vec3 tangent_to;
-	double nearest;  ///< no point of the chord is nearer to the centre
-	double farthest; ///< none is farther
+	Vec3 from, to;       ///< on the path
+	Mark at_from, at_to; ///< where on it: for Path::tangent()
+	double nearest;      ///< no point of the chord is nearer to the centre
+	double farthest;     ///< none is farther
 };
 
 /// Walks a solved path chord by chord. The path must outlive it and not change.
@@ -43,7 +42,9 @@ private:
 	double length_ = 0;      // its length in s
 	int count_ = 0;
 	bool ramp_, ended_ = false;
-	Vec3 point_, tangent_;
+	Piece curve_{{0, 1, 0, 0}, {1, 1, 0, 0}}; // u on the piece
+	Vec3 point_;
+	double r_ = 0, phi_ = 0; // of the point
 	void load(std::size_t i);
 };
 

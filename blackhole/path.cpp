@@ -95,6 +95,13 @@ bool Path::solve(const Vec3& x, const Vec3& d, const Settings& settings) {
 	return false;
 }
 
+Vec3 Path::tangent(const Mark& mark) const {
+	const Node &from = nodes_[mark.piece], &to = nodes_[mark.piece + 1];
+	const Piece piece(from, to);
+	const double h = to.s - from.s, phi = orbit_.k * (from.s + mark.t * h);
+	return unit(orbit_.velocity(piece.at(mark.t), piece.slope(mark.t) / h, std::cos(phi), std::sin(phi)));
+}
+
 double Path::length() const {
 	double sum = 0;
 	const double k = orbit_.k;

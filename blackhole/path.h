@@ -16,6 +16,12 @@ struct Settings {
 	Method method;
 };
 
+/// A place on a solved path: on the piece between two nodes, t in [0, 1].
+struct Mark {
+	std::size_t piece;
+	double t;
+};
+
 /// A solved path. Reusable: solve() again keeps the memory. Not thread-safe; one for each thread.
 class Path {
 public:
@@ -48,6 +54,9 @@ public:
 
 	/// Euclidean length, as the polyline through the nodes.
 	double length() const;
+	/// The unit tangent at a mark.
+	Vec3 tangent(const Mark& mark) const;
+
 	/// Angle swept around the hole's centre, radians, >= 0.
 	double swept() const { return orbit_.k * nodes_.back().s; }
 	/// The relative change of the energy, over the size of its terms, between start and end (the angular momentum cannot

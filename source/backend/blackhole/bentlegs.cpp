@@ -74,18 +74,46 @@ void Bent_Path::Record(const VECTOR from, const VECTOR to, size_t hole, bool tes
 }
 
 // Looks for a hit on a straight piece of the way; on return the chord in hand is that piece, and a hit's depth is from its start.
-bool Bent_Path::Search(const VECTOR from, const Vec3& direction, DBL length, const Blackhole *horizon, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post)
+bool Bent_Path::Search(const VECTOR from, const Vec3& direction, DBL length, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post)
 {
 	Bent_Segment& s = *state;
 	const DBL back = Back_Up(s.moved, s.travelled, bent->holes.Blind());
 	Assign_Vec3(s.chord.Direction, direction);
 	VEvaluateRay(s.chord.Origin, from, -back, s.chord.Direction);
 	isect.Depth = length + back;
-	const Chord_Condition condition(post, Least_Depth(back, s.travelled, length), horizon);
+	const Chord_Condition condition(post, Least_Depth(back, s.travelled, length), NULL);
 	const bool found = bent->trace.FindIntersection(isect, s.chord, pre, condition);
 	Assign_Vector(s.chord.Origin, from);
 	isect.Depth = max(0.0, isect.Depth - back);
 	return found;
+}
+
+// The same on a chord, among its candidates only; they are used up.
+bool Bent_Path::Hit_Chord(const Chord_Run::Chord& chord, const Vec3& direction, DBL length, size_t& candidate, const Blackhole& hole, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post)
+{
+	Bent_Segment& s = *state;
+	const std::vector<std::pair<int, unsigned int> >& found = bent->candidates.found;
+	const int index = found[candidate].first;
+	const DBL blind = bent->holes.Blind(), back = Back_Up(s.moved, s.travelled, blind);
+	const bool near_horizon = (chord.nearest <= 1.0 + 2.0 * HORIZON) || ((chord.nearest - 1.0) * hole.Radius < 2.0 * blind);
+	Assign_Vec3(s.chord.Direction, direction);
+	VEvaluateRay(s.chord.Origin, chord.from, -back, s.chord.Direction);
+	isect.Depth = length + back;
+	const Chord_Condition condition(post, Least_Depth(back, s.travelled, length), near_horizon ? &hole : NULL);
+	bool hit = false;
+	for(; (candidate < found.size()) && (found[candidate].first == index); candidate++)
+	{
+		const ObjectPtr object = bent->holes.Tree().Object(found[candidate].second);
+		Intersection here;
+		if(pre(s.chord, object, 0.0) && bent->trace.FindIntersection(object, here, s.chord, condition, isect.Depth) && (here.Depth < isect.Depth))
+		{
+			isect = here;
+			hit = true;
+		}
+	}
+	Assign_Vector(s.chord.Origin, chord.from);
+	isect.Depth = max(0.0, isect.Depth - back);
+	return hit;
 }
 
 // A piece of the way that hit nothing.
@@ -106,7 +134,7 @@ void Bent_Path::Pass(const VECTOR from, const Vec3& direction, DBL length)
 bool Bent_Path::Straight(const VECTOR from, const Vec3& direction, DBL length, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post)
 {
 	Bent_Segment& s = *state;
-	const bool found = Search(from, direction, length, NULL, isect, pre, post);
+	const bool found = Search(from, direction, length, isect, pre, post);
 	s.has_tangent = false;
 	if(bent->recorder != NULL)
 	{
@@ -120,6 +148,81 @@ bool Bent_Path::Straight(const VECTOR from, const Vec3& direction, DBL length, I
 	}
 	s.moved = true;
 	return found;
+}
+
+// Along the chords of the path that was solved last, a run of them at a time. False if nothing is hit; state->end may be set.
+bool Bent_Path::Along_Chords(size_t index, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post)
+{
+	Bent_Segment& s = *state;
+	const Blackhole& hole = *bent->holes.Holes()[index];
+	const Shells& shells = bent->holes.Shells_Of(index);
+	Blackhole_Counts& counts = bent->counts;
+	Chord_Run& run = bent->run;
+	blackhole::Chords chords(bent->path, hole.Tolerance, !s.moved && !original.IsPrimaryRay());
+	blackhole::Chord c;
+	bool emerges = bent->path.started_inside();
+	for(bool more = true; more; )
+	{
+		run.Clear();
+		bool reach = false;
+		while((run.Count() < Chord_Run::MOST) && (more = chords.next(c)))
+		{
+			VECTOR start, end;
+			hole.To_Scene(c.from, start);
+			hole.To_Scene(c.to, end);
+			if(emerges)
+				Emerge(start);
+			emerges = false;
+			reach = reach || shells.Overlap(c.nearest, c.farthest);
+			run.Add(start, end, c.nearest, c.farthest, c.at_from, c.at_to);
+		}
+		bent->candidates.found.clear();
+		if(reach)
+		{
+			run.Bound();
+			bent->holes.Tree().Find(run, bent->holes.Radii_Of(index), bent->candidates);
+		}
+		size_t candidate = 0;
+		for(int i = 0; i < run.Count(); i++)
+		{
+			const Chord_Run::Chord& chord = run[i];
+			Vec3 along = Vec3_Of(chord.to) - Vec3_Of(chord.from);
+			const DBL chord_length = length(along), remains = s.budget - s.travelled;
+			const bool test = (candidate < bent->candidates.found.size()) && (bent->candidates.found[candidate].first == i);
+			counts.Chords++;
+			s.chords++;
+			(test ? counts.Tested : counts.Skipped)++;
+			if(chord_length == 0.0)
+			{
+				while((candidate < bent->candidates.found.size()) && (bent->candidates.found[candidate].first == i))
+					candidate++;
+				continue;
+			}
+			along = (1.0 / chord_length) * along;
+			const bool found = test && Hit_Chord(chord, along, min(chord_length, remains), candidate, hole, isect, pre, post);
+			s.moved = true;
+			Record(chord.from, found ? isect.IPoint : chord.to, index, test);
+			if(found)
+			{
+				// The quadratic through both tangents whose mean is the chord.
+				const DBL t = min(1.0, isect.Depth / chord_length);
+				const Vec3 from = bent->path.tangent(chord.at_from), to = bent->path.tangent(chord.at_to);
+				s.tangent = unit((1.0 - 4.0 * t + 3.0 * t * t) * from + (3.0 * t * t - 2.0 * t) * to + (6.0 * t - 6.0 * t * t) * along);
+				s.has_tangent = true;
+				return true;
+			}
+			if(chord_length >= remains)
+			{
+				Assign_Vector(s.chord.Origin, chord.from);
+				Assign_Vec3(s.chord.Direction, along);
+				isect.Depth = remains;
+				s.end = "max distance";
+				return false;
+			}
+			Pass(chord.from, along, chord_length);
+		}
+	}
+	return false;
 }
 
 // Through one effect sphere. On true the chord in hand hit something; otherwise from and direction are where the
@@ -146,48 +249,10 @@ bool Bent_Path::Through(size_t index, VECTOR from, Vec3& direction, Intersection
 	// Only what the scene requires: no chords where nothing can be hit, filled, recorded or measured along them.
 	if(!shells.Empty() || s.volume || (bent->recorder != NULL) || (s.budget < BOUND_HUGE))
 	{
-		blackhole::Chords chords(path, hole.Tolerance, !s.moved && !original.IsPrimaryRay());
-		blackhole::Chord c;
-		bool emerges = path.started_inside();
-		while(chords.next(c))
-		{
-			VECTOR start, end;
-			hole.To_Scene(c.from, start);
-			hole.To_Scene(c.to, end);
-			if(emerges)
-				Emerge(start);
-			emerges = false;
-			Vec3 along = Vec3_Of(end) - Vec3_Of(start);
-			const DBL chord_length = length(along), remains = s.budget - s.travelled;
-			if(chord_length == 0.0)
-				continue;
-			along = (1.0 / chord_length) * along;
-			counts.Chords++;
-			s.chords++;
-			const bool test = shells.Overlap(c.nearest, c.farthest);
-			(test ? counts.Tested : counts.Skipped)++;
-			const bool near_horizon = (c.nearest <= 1.0 + 2.0 * HORIZON) || ((c.nearest - 1.0) * hole.Radius < 2.0 * bent->holes.Blind());
-			const bool found = test && Search(start, along, min(chord_length, remains), near_horizon ? &hole : NULL, isect, pre, post);
-			s.moved = true;
-			Record(start, found ? isect.IPoint : end, index, test);
-			if(found)
-			{
-				// The quadratic through both tangents whose mean is the chord.
-				const DBL t = min(1.0, isect.Depth / chord_length);
-				s.tangent = unit((1.0 - 4.0 * t + 3.0 * t * t) * c.tangent_from + (3.0 * t * t - 2.0 * t) * c.tangent_to + (6.0 * t - 6.0 * t * t) * along);
-				s.has_tangent = true;
-				return true;
-			}
-			if(chord_length >= remains)
-			{
-				Assign_Vector(s.chord.Origin, start);
-				Assign_Vec3(s.chord.Direction, along);
-				isect.Depth = remains;
-				s.end = "max distance";
-				return false;
-			}
-			Pass(start, along, chord_length);
-		}
+		if(Along_Chords(index, isect, pre, post))
+			return true;
+		if(*s.end != 0)
+			return false;
 	}
 	// Without chords the way's length is still wanted, if something beyond the sphere can be hit: it fades, radiosity asks.
 	else if(bent->holes.Far_Objects() && !captured)

@@ -7,6 +7,7 @@
 
 #include "backend/frame.h"
 #include "backend/render/ray.h"
+#include "backend/blackhole/chordtree.h"
 #include "blackhole/path.h"
 
 namespace pov
@@ -54,6 +55,8 @@ class Bent_Rays
 		Trace& trace;
 		Blackhole_Counts& counts;
 		blackhole::Path path;
+		Chord_Run run;
+		Chord_Candidates candidates;
 		std::vector<Bent_Segment *> pool; ///< states, by depth of recursion
 		size_t depth;
 		Recorder *recorder;                ///< of the pixel in hand; NULL: not kept

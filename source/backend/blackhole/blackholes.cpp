@@ -85,6 +85,9 @@ std::string Blackholes::Prepare(const SceneData& scene, TraceThreadData *thread,
 	std::string report;
 	char text[512];
 	shells.assign(holes.size(), Shells());
+	tree.Build(scene.objects);
+	for(size_t h = 0; h < holes.size(); h++)
+		radii.push_back(tree.Radii_Around(*holes[h]));
 	for(size_t i = 0; i < scene.objects.size(); i++)
 		if(Visible(*scene.objects[i]))
 			blind = max(blind, Blind_Depth(*scene.objects[i]));

@@ -12,6 +12,7 @@
 #include "base/povms.h"
 #include "base/povmscpp.h"
 #include "backend/blackhole/blackhole.h"
+#include "backend/blackhole/chordtree.h"
 #include "backend/blackhole/reach.h"
 
 namespace pov
@@ -58,6 +59,9 @@ class Blackholes
 		/// Whether there is something to hit that is not within reach of every hole.
 		bool Far_Objects() const { return far_objects; }
 		const Shells& Shells_Of(size_t hole) const { return shells[hole]; }
+		/// The objects by place, and the radii around a hole at which each may be hit.
+		const Chord_Tree& Tree() const { return tree; }
+		const std::vector<std::pair<DBL, DBL> >& Radii_Of(size_t hole) const { return radii[hole]; }
 
 		/// The hole in whose effect sphere the point lies, or NULL.
 		const Blackhole *At(const VECTOR p) const;
@@ -78,6 +82,8 @@ class Blackholes
 		bool enabled;
 		std::vector<Blackhole *> holes;
 		std::vector<Shells> shells;
+		Chord_Tree tree;
+		std::vector<std::vector<std::pair<DBL, DBL> > > radii;
 		DBL blind;
 		bool far_objects;
 		const Blackhole *falling;

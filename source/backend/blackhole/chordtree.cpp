@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+
+// frame.h must always be the first POV file included (pulls in platform config)
+#include "backend/frame.h"
+#include "backend/math/matrices.h"
+#include "backend/math/vector.h"
+#include "backend/scene/objects.h"
+#include "backend/shape/planes.h"
+#include "backend/blackhole/chordtree.h"
+
+// this must be the last file included
+#include "base/povdebug.h"
+
+namespace pov
+{
+
+// Boxes are in single precision, and chords accept what lies a little before them (bentlegs.cpp's overlap).
+static const DBL MARGIN = MIN_ISECT_DEPTH;
+
+static void Join(Chord_Run::Box& box, const Chord_Run::Box& a, const Chord_Run::Box& b)
+{
+	for(int i = 0; i < 3; i++)
+	{
+		box.lo[i] = a.lo[i] < b.lo[i] ? a.lo[i] : b.lo[i];
+		box.hi[i] = a.hi[i] > b.hi[i] ? a.hi[i] : b.hi[i];
+	}
+}
+
+static bool Overlap(const Chord_Run::Box& a, const Chord_Run::Box& b)
+{
+	return (a.lo[0] <= b.hi[0]) && (b.lo[0] <= a.hi[0]) && (a.lo[1] <= b.hi[1]) && (b.lo[1] <= a.hi[1]) && (a.lo[2] <= b.hi[2]) && (b.lo[2] <= a.hi[2]);
+}
+
+static DBL Widest(const Chord_Run::Box& b)
+{
+	return max(b.hi[0] - b.lo[0], max(b.hi[1] - b.lo[1], b.hi[2] - b.lo[2]));
+}
+
+// Whether the segment meets the box.
+static bool Meets(const Chord_Run::Chord& c, const Chord_Run::Box& box)
+{
+	DBL in = 0.0, out = 1.0;
+	for(int i = 0; i < 3; i++)
+	{
+		const DBL d = c.to[i] - c.from[i];
+		if(fabs(d) < 1e-30)
+		{
+			if((c.from[i] < box.lo[i]) || (c.from[i] > box.hi[i]))
+				return false;
+			continue;
+		}
+		const DBL a = (box.lo[i] - c.from[i]) / d, b = (box.hi[i] - c.from[i]) / d;
+		in = max(in, min(a, b));
+		out = min(out, max(a, b));
+		if(in > out)
+			return false;
+	}
+	return true;
+}
+
+void Chord_Run::Add(const VECTOR from, const VECTOR to, DBL nearest, DBL farthest, const blackhole::Mark& at_from, const blackhole::Mark& at_to)
+{
+	Chord& c = chords[count++];
+	Assign_Vector(c.from, from);
+	Assign_Vector(c.to, to);
+	c.nearest = nearest;
+	c.farthest = farthest;
+	c.at_from = at_from;
+	c.at_to = at_to;
+}
+
+void Chord_Run::Bound()
+{
+	for(int j = 0; j < MOST; j++)
+	{
+		Box& b = boxes[MOST + j];
+		for(int i = 0; i < 3; i++)
+		{
+			b.lo[i] = j < count ? min(chords[j].from[i], chords[j].to[i]) : HUGE_VAL;
+			b.hi[i] = j < count ? max(chords[j].from[i], chords[j].to[i]) : -HUGE_VAL;
+		}
+	}
+	for(int i = MOST - 1; i > 0; i--)
+		Join(boxes[i], boxes[2 * i], boxes[2 * i + 1]);
+}
+
+void Chord_Tree::Build(const std::vector<ObjectPtr>& scene)
+{
+	std::vector<int> list;
+	for(size_t k = 0; k < scene.size(); k++)
+	{
+		if(!Visible(*scene[k]))
+			continue;
+		Chord_Run::Box box;
+		for(int i = 0; i < 3; i++)
+		{
+			const DBL lo = scene[k]->BBox.Lower_Left[i], hi = lo + scene[k]->BBox.Lengths[i], margin = MARGIN + 1e-6 * max(fabs(lo), fabs(hi));
+			box.lo[i] = lo - margin;
+			box.hi[i] = hi + margin;
+		}
+		// A plane's box is half of space; so is that of most things as large as this.
+		if(Widest(box) > 1e6)
+			endless.push_back((unsigned int)objects.size());
+		else
+			list.push_back(int(objects.size()));
+		objects.push_back(scene[k]);
+		boxes.push_back(box);
+	}
+	if(list.empty())
+		return;
+	nodes.push_back(Node());
+	Split(0, list, 0, list.size());
+}
+
+void Chord_Tree::Split(int n, std::vector<int>& list, size_t from, size_t to)
+{
+	Chord_Run::Box box = boxes[list[from]];
+	for(size_t i = from + 1; i < to; i++)
+		Join(box, box, boxes[list[i]]);
+	nodes[n].box = box;
+	nodes[n].left = -1;
+	nodes[n].object = list[from];
+	if(to - from == 1)
+		return;
+	int axis = 0;
+	for(int i = 1; i < 3; i++)
+		if(box.hi[i] - box.lo[i] > box.hi[axis] - box.lo[axis])
+			axis = i;
+	std::vector<std::pair<DBL, int> > order;
+	for(size_t i = from; i < to; i++)
+		order.push_back(std::make_pair(boxes[list[i]].lo[axis] + boxes[list[i]].hi[axis], list[i]));
+	std::sort(order.begin(), order.end());
+	for(size_t i = from; i < to; i++)
+		list[i] = order[i - from].second;
+	const size_t middle = from + (to - from) / 2;
+	const int left = int(nodes.size());
+	nodes.push_back(Node());
+	nodes.push_back(Node());
+	nodes[n].left = left;
+	Split(left, list, from, middle);
+	Split(left + 1, list, middle, to);
+}
+
+std::vector<std::pair<DBL, DBL> > Chord_Tree::Radii_Around(const Blackhole& hole) const
+{
+	std::vector<std::pair<DBL, DBL> > radii(objects.size());
+	for(size_t i = 0; i < objects.size(); i++)
+		Radii(*objects[i], hole, radii[i].first, radii[i].second);
+	return radii;
+}
+
+// Whether a chord may meet a plane: its ends are on different sides, or one is on it.
+static bool May_Meet(const Chord_Run::Chord& c, const ObjectBase& object)
+{
+	const Plane *plane = dynamic_cast<const Plane *>(&object);
+	if((plane == NULL) || (plane->Trans != NULL))
+		return true;
+	DBL a, b;
+	VDot(a, plane->Normal_Vector, c.from);
+	VDot(b, plane->Normal_Vector, c.to);
+	a += plane->Distance;
+	b += plane->Distance;
+	return (a * b <= 0.0) || (min(fabs(a), fabs(b)) <= MARGIN);
+}
+
+void Chord_Tree::Find(const Chord_Run& run, const std::vector<std::pair<DBL, DBL> >& radii, Chord_Candidates& out) const
+{
+	out.found.clear();
+	for(size_t k = 0; k < endless.size(); k++)
+	{
+		const std::pair<DBL, DBL>& r = radii[endless[k]];
+		for(int j = 0; j < run.Count(); j++)
+			if((run[j].nearest <= r.second) && (r.first <= run[j].farthest) && May_Meet(run[j], *objects[endless[k]]))
+				out.found.push_back(std::make_pair(j, endless[k]));
+	}
+	out.stack.clear();
+	if(!nodes.empty())
+		out.stack.push_back(std::make_pair(0, 1));
+	while(!out.stack.empty())
+	{
+		const int n = out.stack.back().first, h = out.stack.back().second;
+		out.stack.pop_back();
+		const Node& node = nodes[n];
+		const Chord_Run::Box& box = run.Heap(h);
+		if(!Overlap(node.box, box))
+			continue;
+		const bool one_chord = (h >= Chord_Run::MOST), leaf = (node.left < 0);
+		if(one_chord && leaf)
+		{
+			const Chord_Run::Chord& c = run[h - Chord_Run::MOST];
+			const std::pair<DBL, DBL>& r = radii[node.object];
+			if((c.nearest <= r.second) && (r.first <= c.farthest) && Meets(c, node.box))
+				out.found.push_back(std::make_pair(h - Chord_Run::MOST, (unsigned int)node.object));
+		}
+		else if(leaf || (!one_chord && (Widest(box) > Widest(node.box))))
+		{
+			out.stack.push_back(std::make_pair(n, 2 * h));
+			out.stack.push_back(std::make_pair(n, 2 * h + 1));
+		}
+		else
+		{
+			out.stack.push_back(std::make_pair(node.left, h));
+			out.stack.push_back(std::make_pair(node.left + 1, h));
+		}
+	}
+	if(out.found.size() > 1)
+		std::sort(out.found.begin(), out.found.end());
+}
+
+}

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+/// Which of a scene's objects each chord of a bent ray may hit: one walk of a tree of boxes with many chords at once.
+///
+/// POV-Ray's own trees know one straight ray at a time, and do not exist under every bounding option; with this one the
+/// same objects are tried whatever the options are.
+#ifndef POVRAY_BLACKHOLE_CHORDTREE_H
+#define POVRAY_BLACKHOLE_CHORDTREE_H
+
+#include <utility>
+#include <vector>
+
+#include "backend/blackhole/reach.h"
+#include "blackhole/path.h"
+
+namespace pov
+{
+
+/// Up to sixteen chords in a row, in scene coordinates, with boxes round each and round each run of two, four, ...
+class Chord_Run
+{
+	public:
+		static const int MOST = 16;
+
+		struct Box
+		{
+			DBL lo[3], hi[3];
+		};
+
+		void Clear() { count = 0; }
+		/// nearest, farthest: to the hole's centre, in Schwarzschild radii.
+		void Add(const VECTOR from, const VECTOR to, DBL nearest, DBL farthest, const blackhole::Mark& at_from, const blackhole::Mark& at_to);
+		/// To be called when all are there.
+		void Bound();
+
+		struct Chord
+		{
+			VECTOR from, to;
+			DBL nearest, farthest;
+			blackhole::Mark at_from, at_to;
+		};
+		int Count() const { return count; }
+		const Chord& operator[](int i) const { return chords[i]; }
+		/// The boxes as a heap: 1 holds all, 2 i and 2 i + 1 are the halves of i, chord j is MOST + j.
+		const Box& Heap(int i) const { return boxes[i]; }
+	private:
+		int count;
+		Chord chords[MOST];
+		Box boxes[2 * MOST];
+};
+
+/// A thread's working space, and the pairs that were found: chord and object, in that order.
+struct Chord_Candidates
+{
+	std::vector<std::pair<int, unsigned int> > found; ///< sorted
+	std::vector<std::pair<int, int> > stack;
+};
+
+class Chord_Tree
+{
+	public:
+		/// Takes what a ray can hit.
+		void Build(const std::vector<ObjectPtr>& scene);
+		/// The radii at which the objects may be hit around a hole, for Find().
+		std::vector<std::pair<DBL, DBL> > Radii_Around(const Blackhole& hole) const;
+		ObjectPtr Object(unsigned int i) const { return objects[i]; }
+
+		void Find(const Chord_Run& run, const std::vector<std::pair<DBL, DBL> >& radii, Chord_Candidates& out) const;
+	private:
+		struct Node
+		{
+			Chord_Run::Box box;
+			int left;   ///< index of the first of two children; -1: a leaf
+			int object; ///< of a leaf
+		};
+		void Split(int node, std::vector<int>& list, size_t from, size_t to);
+
+		std::vector<ObjectPtr> objects;
+		std::vector<Chord_Run::Box> boxes; ///< of the objects
+		std::vector<Node> nodes;
+		std::vector<unsigned int> endless; ///< objects without a useful box
+};
+
+}
+
+#endif
