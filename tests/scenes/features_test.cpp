@@ -82,12 +82,13 @@ TEST_P(Feature, TendsToTheHoleFreePicture) {
 	const double share = differing(hole, twin, 0.004);
 	std::printf("%s: %.1f chords a ray, %.2f %% of pixels differ by over 0.4 %%\n", GetParam().c_str(), chords, 100 * share);
 	EXPECT_GT(chords, 5);
-	EXPECT_LE(share, limit("Straight", 0.005));
+	EXPECT_LE(share, limit("Straight", 0.002));
 }
 
 // A hole that no ray comes near changes not one bit: straight legs are POV-Ray's own.
 TEST_P(Feature, IsTheHoleFreePictureFarFromTheHole) {
 	const Picture far = render(false, "Declare=Far=1");
+	EXPECT_GE(value(text, "Bent Rays:"), 0) << "there is no hole";
 	EXPECT_LE(value(text, "Bent Rays:"), 20) << "the hole is not far"; // a mirror may send one that way
 	EXPECT_LE(differing(far, render(true, "Declare=Far=1"), 0), limit("Far", 0));
 }
@@ -104,6 +105,8 @@ TEST_P(Feature, DependsOnNeitherBoundingNorThreads) {
 // Turned and mirrored as a whole, the picture stays what it was, but for pixels on edges.
 TEST_P(Feature, IsTheSameTurnedAndMirrored) {
 	const Picture hole = render(false), twin = render(true);
+	if (limit("Turned", 0.01) >= 1)
+		GTEST_SKIP() << "POV-Ray's own is not";
 	for (const char* words : {"Declare=Turned=1", "Declare=Mirrored=1"}) {
 		const double bent = differing(hole, render(false, words), 0.01), straight = differing(twin, render(true, words), 0.01);
 		std::printf(
@@ -115,6 +118,8 @@ TEST_P(Feature, IsTheSameTurnedAndMirrored) {
 // At other scales the picture changes no more than POV-Ray's own does.
 TEST_P(Feature, IsTheSameAtEveryScale) {
 	const Picture hole = render(false), twin = render(true);
+	if (limit("Scale", 0.01) >= 1)
+		GTEST_SKIP() << "POV-Ray's own is not";
 	for (const char* words : {"Declare=Size=1e-2", "Declare=Size=1e4"}) {
 		const double bent = differing(hole, render(false, words), 0.01), straight = differing(twin, render(true, words), 0.01);
 		std::printf(

@@ -22,13 +22,17 @@ Camera camera() { return Camera({0, 3, -14}, {0.02, -3, 14}, 0.05, 16, 12); }
 
 // The integral of f (the mean over a step between two points) over the length of the exact path of a pixel; captured tells how it
 // ends.
-double along(const Camera& c, int x, int y, const std::function<double(const Vec3& from, const Vec3& to)>& f, bool& captured) {
+double along(const Camera& c, int x, int y, double stop, const std::function<double(const Vec3& from, const Vec3& to)>& f,
+	bool& captured) {
 	const std::vector<Vec3> points = oracle::polyline(c.location, c.pixel(x, y), R, 400);
-	captured = length(points.back()) < 2;
+	captured =
+		length(points.back()) < 2 || std::any_of(points.begin(), points.end(), [=](const Vec3& q) { return length(q) < stop; });
 	double sum = 0;
-	for (std::size_t i = 1; i < points.size(); i++) {
+	for (std::size_t i = 1; i < points.size() && length(points[i - 1]) > stop; i++) {
 		const Vec3 step = points[i] - points[i - 1];
-		const double l = length(step);
+		// The last step ends at the wall.
+		const double r0 = length(points[i - 1]), r1 = length(points[i]),
+					 l = length(step) * (r1 < stop ? (r0 - stop) / (r0 - r1) : 1);
 		if (l > 0)
 			sum += l * f(points[i - 1], points[i]);
 	}
@@ -43,7 +47,7 @@ struct Worst {
 // Compares a channel of every pixel that promises something with what the integral makes of it.
 Worst compare(const char* name, const std::string& scene, int channel,
 	const std::function<double(const Vec3& from, const Vec3& to)>& f,
-	const std::function<double(double integral, bool captured)>& colour, bool captured_only = false) {
+	const std::function<double(double integral, bool captured)>& colour, bool captured_only = false, double stop = 0) {
 	const Camera c = camera();
 	const Rendering run = povray(c.text() + hole + scene, c.width, c.height);
 	Worst w;
@@ -59,7 +63,7 @@ Worst compare(const char* name, const std::string& scene, int channel,
 			if (std::fabs(b / critical_b - 1) < 1e-2)
 				continue; // lengths there are those of many turns
 			bool captured = false;
-			const double integral = along(c, x, y, f, captured), expected = colour(integral, captured);
+			const double integral = along(c, x, y, stop, f, captured), expected = colour(integral, captured);
 			if (captured_only && !captured)
 				continue;
 			(captured ? w.captured : w.escaped)++;
@@ -148,6 +152,15 @@ TEST(Volume, RainbowIsWhereThePathRunsInItsBand) {
 		},
 		[](double i, bool) { return 1 - std::exp(-i); }, true);
 	EXPECT_LT(w.off, 8e-3); // a chord is in the band or not: half of one, 0.08 long, at each edge, over the distance of 10
+	EXPECT_GT(w.span, 0.1);
+}
+
+// As far as what it hits: a wall round the hole, in front of which rays are bent too.
+TEST(Volume, FogEndsAtAWall) {
+	const Worst w = compare(
+		"fog before a wall", "fog { distance 12 color rgb 1 } sphere { 0, 3.5 pigment { rgb 0 } finish { ambient 0 diffuse 0 } }",
+		0, [](const Vec3&, const Vec3&) { return 1 / 12.0; }, [](double i, bool) { return 1 - std::exp(-i); }, true, 3.5);
+	EXPECT_LT(w.off, 1e-4);
 	EXPECT_GT(w.span, 0.1);
 }
 

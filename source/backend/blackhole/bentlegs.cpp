@@ -30,13 +30,13 @@ static DBL Back_Up(bool moved, DBL travelled, DBL blind)
 	return moved ? min(2.0 * blind, 0.9 * travelled) : 0.0;
 }
 
-// ... and accept what lies beyond the joint, less a little so that rounding on both sides leaves no gap: the least depth
-// a hit may have, on a chord of this length. It also is as far from the ray's own origin as POV-Ray wants it.
-static DBL Least_Depth(DBL back, DBL travelled, DBL length)
+// ... and accept what lies beyond the joint, less a little so that rounding, or vague hits, on both sides leave no gap: the
+// least depth a hit may have, on a chord of this length. It also is as far from the ray's own origin as POV-Ray wants it.
+static DBL Least_Depth(DBL back, DBL vague, DBL travelled, DBL length)
 {
 	if(back == 0.0)
 		return 0.0;
-	const DBL overlap = min(0.2 * MIN_ISECT_DEPTH, 1e-3 * length);
+	const DBL overlap = min(0.5 * back, max(vague, min(0.2 * MIN_ISECT_DEPTH, 1e-3 * length)));
 	return max(back - overlap, back + MIN_ISECT_DEPTH - travelled);
 }
 
@@ -81,7 +81,7 @@ bool Bent_Path::Search(const VECTOR from, const Vec3& direction, DBL length, Int
 	Assign_Vec3(s.chord.Direction, direction);
 	VEvaluateRay(s.chord.Origin, from, -back, s.chord.Direction);
 	isect.Depth = length + back;
-	const Chord_Condition condition(post, Least_Depth(back, s.travelled, length), NULL);
+	const Chord_Condition condition(post, Least_Depth(back, bent->holes.Vague(), s.travelled, length), NULL);
 	const bool found = bent->trace.FindIntersection(isect, s.chord, pre, condition);
 	Assign_Vector(s.chord.Origin, from);
 	isect.Depth = max(0.0, isect.Depth - back);
@@ -99,7 +99,7 @@ bool Bent_Path::Hit_Chord(const Chord_Run::Chord& chord, const Vec3& direction, 
 	Assign_Vec3(s.chord.Direction, direction);
 	VEvaluateRay(s.chord.Origin, chord.from, -back, s.chord.Direction);
 	isect.Depth = length + back;
-	const Chord_Condition condition(post, Least_Depth(back, s.travelled, length), near_horizon ? &hole : NULL);
+	const Chord_Condition condition(post, Least_Depth(back, bent->holes.Vague(), s.travelled, length), near_horizon ? &hole : NULL);
 	bool hit = false;
 	for(; (candidate < found.size()) && (found[candidate].first == index); candidate++)
 	{

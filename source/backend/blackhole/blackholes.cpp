@@ -46,6 +46,7 @@ void Blackhole_Counts::Add(const Blackhole_Counts& other)
 Blackholes::Blackholes(POVMS_Object& options) :
 	enabled(options.TryGetBool(kPOVAttrib_Blackhole, true)),
 	blind(MIN_ISECT_DEPTH),
+	vague(0.0),
 	far_objects(false),
 	falling(NULL),
 	paths(Ray_Paths::Create(options))
@@ -85,12 +86,15 @@ std::string Blackholes::Prepare(const SceneData& scene, TraceThreadData *thread,
 	std::string report;
 	char text[512];
 	shells.assign(holes.size(), Shells());
-	tree.Build(scene.objects);
-	for(size_t h = 0; h < holes.size(); h++)
-		radii.push_back(tree.Radii_Around(*holes[h]));
 	for(size_t i = 0; i < scene.objects.size(); i++)
 		if(Visible(*scene.objects[i]))
+		{
 			blind = max(blind, Blind_Depth(*scene.objects[i]));
+			vague = max(vague, Vague_Depth(*scene.objects[i]));
+		}
+	tree.Build(scene.objects, MIN_ISECT_DEPTH + vague);
+	for(size_t h = 0; h < holes.size(); h++)
+		radii.push_back(tree.Radii_Around(*holes[h]));
 	for(size_t h = 0; h < holes.size(); h++)
 	{
 		const Blackhole& hole = *holes[h];

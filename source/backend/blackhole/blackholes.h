@@ -56,6 +56,8 @@ class Blackholes
 		std::string Prepare(const SceneData& scene, TraceThreadData *thread, MessageFactory& messages);
 		/// The most any object's code is blind for after a ray's start, scene units.
 		DBL Blind() const { return blind; }
+		/// The most any object's hits are off.
+		DBL Vague() const { return vague; }
 		/// Whether there is something to hit that is not within reach of every hole.
 		bool Far_Objects() const { return far_objects; }
 		const Shells& Shells_Of(size_t hole) const { return shells[hole]; }
@@ -84,7 +86,7 @@ class Blackholes
 		std::vector<Shells> shells;
 		Chord_Tree tree;
 		std::vector<std::vector<std::pair<DBL, DBL> > > radii;
-		DBL blind;
+		DBL blind, vague;
 		bool far_objects;
 		const Blackhole *falling;
 		boost::scoped_ptr<Ray_Paths> paths;

@@ -16,9 +16,6 @@
 namespace pov
 {
 
-// Boxes are in single precision, and chords accept what lies a little before them (bentlegs.cpp's overlap).
-static const DBL MARGIN = MIN_ISECT_DEPTH;
-
 static void Join(Chord_Run::Box& box, const Chord_Run::Box& a, const Chord_Run::Box& b)
 {
 	for(int i = 0; i < 3; i++)
@@ -86,8 +83,9 @@ void Chord_Run::Bound()
 		Join(boxes[i], boxes[2 * i], boxes[2 * i + 1]);
 }
 
-void Chord_Tree::Build(const std::vector<ObjectPtr>& scene)
+void Chord_Tree::Build(const std::vector<ObjectPtr>& scene, DBL m)
 {
+	margin = m;
 	std::vector<int> list;
 	for(size_t k = 0; k < scene.size(); k++)
 	{
@@ -96,9 +94,9 @@ void Chord_Tree::Build(const std::vector<ObjectPtr>& scene)
 		Chord_Run::Box box;
 		for(int i = 0; i < 3; i++)
 		{
-			const DBL lo = scene[k]->BBox.Lower_Left[i], hi = lo + scene[k]->BBox.Lengths[i], margin = MARGIN + 1e-6 * max(fabs(lo), fabs(hi));
-			box.lo[i] = lo - margin;
-			box.hi[i] = hi + margin;
+			const DBL lo = scene[k]->BBox.Lower_Left[i], hi = lo + scene[k]->BBox.Lengths[i], more = margin + 1e-6 * max(fabs(lo), fabs(hi)); // boxes are in single precision
+			box.lo[i] = lo - more;
+			box.hi[i] = hi + more;
 		}
 		// A plane's box is half of space; so is that of most things as large as this.
 		if(Widest(box) > 1e6)
@@ -147,12 +145,16 @@ std::vector<std::pair<DBL, DBL> > Chord_Tree::Radii_Around(const Blackhole& hole
 {
 	std::vector<std::pair<DBL, DBL> > radii(objects.size());
 	for(size_t i = 0; i < objects.size(); i++)
+	{
 		Radii(*objects[i], hole, radii[i].first, radii[i].second);
+		radii[i].first -= margin / hole.Radius;
+		radii[i].second += margin / hole.Radius;
+	}
 	return radii;
 }
 
 // Whether a chord may meet a plane: its ends are on different sides, or one is on it.
-static bool May_Meet(const Chord_Run::Chord& c, const ObjectBase& object)
+static bool May_Meet(const Chord_Run::Chord& c, const ObjectBase& object, DBL margin)
 {
 	const Plane *plane = dynamic_cast<const Plane *>(&object);
 	if((plane == NULL) || (plane->Trans != NULL))
@@ -162,7 +164,7 @@ static bool May_Meet(const Chord_Run::Chord& c, const ObjectBase& object)
 	VDot(b, plane->Normal_Vector, c.to);
 	a += plane->Distance;
 	b += plane->Distance;
-	return (a * b <= 0.0) || (min(fabs(a), fabs(b)) <= MARGIN);
+	return (a * b <= 0.0) || (min(fabs(a), fabs(b)) <= margin);
 }
 
 void Chord_Tree::Find(const Chord_Run& run, const std::vector<std::pair<DBL, DBL> >& radii, Chord_Candidates& out) const
@@ -172,7 +174,7 @@ void Chord_Tree::Find(const Chord_Run& run, const std::vector<std::pair<DBL, DBL
 	{
 		const std::pair<DBL, DBL>& r = radii[endless[k]];
 		for(int j = 0; j < run.Count(); j++)
-			if((run[j].nearest <= r.second) && (r.first <= run[j].farthest) && May_Meet(run[j], *objects[endless[k]]))
+			if((run[j].nearest <= r.second) && (r.first <= run[j].farthest) && May_Meet(run[j], *objects[endless[k]], margin))
 				out.found.push_back(std::make_pair(j, endless[k]));
 	}
 	out.stack.clear();

@@ -58,8 +58,8 @@ struct Chord_Candidates
 class Chord_Tree
 {
 	public:
-		/// Takes what a ray can hit.
-		void Build(const std::vector<ObjectPtr>& scene);
+		/// Takes what a ray can hit. margin: how far before its start a chord accepts a hit, scene units.
+		void Build(const std::vector<ObjectPtr>& scene, DBL margin);
 		/// The radii at which the objects may be hit around a hole, for Find().
 		std::vector<std::pair<DBL, DBL> > Radii_Around(const Blackhole& hole) const;
 		ObjectPtr Object(unsigned int i) const { return objects[i]; }
@@ -74,6 +74,7 @@ class Chord_Tree
 		};
 		void Split(int node, std::vector<int>& list, size_t from, size_t to);
 
+		DBL margin;
 		std::vector<ObjectPtr> objects;
 		std::vector<Chord_Run::Box> boxes; ///< of the objects
 		std::vector<Node> nodes;

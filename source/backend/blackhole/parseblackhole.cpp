@@ -216,8 +216,14 @@ bool Parser::Link_Blackholes(ObjectPtr object)
 		return true;
 	}
 	CSG *csg = dynamic_cast<CSG *>(object);
-	if((csg == NULL) || (dynamic_cast<CSGIntersection *>(object) != NULL))
+	if(csg == NULL)
 		return false;
+	if(dynamic_cast<CSGIntersection *>(object) != NULL)
+	{
+		// Others were refused when they were made: this is a union turned inside out.
+		Check_No_Blackhole(object, "an inverse union");
+		return false;
+	}
 	bool found = false;
 	if(!csg->Clip.empty())
 		Check_No_Blackhole(csg, "what is clipped");
@@ -235,6 +241,11 @@ bool Parser::Link_Blackholes(ObjectPtr object)
 		return false;
 	Destroy_Object(csg);
 	return true;
+}
+
+bool Parser::Has_Blackholes() const
+{
+	return !sceneData->blackHoles->Holes().empty();
 }
 
 // When everything is parsed: what can only be said of the whole scene.

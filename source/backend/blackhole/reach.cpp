@@ -17,9 +17,11 @@
 #include "backend/scene/objects.h"
 #include "backend/shape/blob.h"
 #include "backend/shape/csg.h"
+#include "backend/shape/fpmetric.h"
 #include "backend/shape/isosurf.h"
 #include "backend/shape/planes.h"
 #include "backend/shape/spheres.h"
+#include "backend/shape/sphsweep.h"
 #include "backend/blackhole/reach.h"
 
 // this must be the last file included
@@ -88,29 +90,55 @@ void Radii(const ObjectBase& object, const Blackhole& hole, DBL& nearest, DBL& f
 	farthest = (sqrt(far2) + 1e-6 * size) / hole.Radius;
 }
 
-// The shapes' own DEPTH_TOLERANCE: none exceeds 1e-4, but for blobs. Some mean their own units, some the scene's. An isosurface takes what is within
-// a few times its accuracy for the surface it starts from.
-DBL Blind_Depth(const ObjectBase& object)
+// The most that an object or any of its parts has of something, scene units; stretch: no direction of its own space is
+// stretched by more.
+static DBL Most_Of(const ObjectBase& object, DBL (*own)(const ObjectBase&, DBL stretch))
 {
-	DBL depth = 1e-4;
-	if(dynamic_cast<const Blob *>(&object) != NULL)
-		depth = 1e-2;
-	const IsoSurface *iso = dynamic_cast<const IsoSurface *>(&object);
-	if(iso != NULL)
-		depth = max(depth, 10.0 * iso->accuracy);
+	DBL square = 1.0;
 	if(object.Trans != NULL)
 	{
-		DBL square = 0.0; // no direction is stretched by more than the root of this
+		square = 0.0;
 		for(int i = 0; i < 3; i++)
 			for(int j = 0; j < 3; j++)
 				square += Sqr(object.Trans->matrix[i][j]);
-		depth *= max(1.0, sqrt(square));
 	}
+	DBL most = own(object, sqrt(square));
 	const CompoundObject *compound = dynamic_cast<const CompoundObject *>(&object);
 	if(compound != NULL)
 		for(size_t i = 0; i < compound->children.size(); i++)
-			depth = max(depth, Blind_Depth(*compound->children[i]));
-	return depth;
+			most = max(most, Most_Of(*compound->children[i], own));
+	return most;
+}
+
+// What is found by search is found to within this, and more than once from different starts; all else has roots. An
+// isosurface's accuracy is in scene units, a parametric surface's in its parameters, as a part of its size.
+static DBL Own_Vagueness(const ObjectBase& object, DBL stretch)
+{
+	if(const IsoSurface *iso = dynamic_cast<const IsoSurface *>(&object))
+		return 2.0 * iso->accuracy;
+	if(const Parametric *parametric = dynamic_cast<const Parametric *>(&object))
+		return parametric->accuracy * max(object.BBox.Lengths[X], max(object.BBox.Lengths[Y], object.BBox.Lengths[Z]));
+	if(const SphereSweep *sweep = dynamic_cast<const SphereSweep *>(&object))
+		return 2.0 * sweep->Depth_Tolerance * max(1.0, stretch);
+	return 0.0;
+}
+
+// The shapes' own DEPTH_TOLERANCE: none exceeds 1e-4, but for blobs. Some mean their own units, some the scene's. An isosurface
+// takes what is within a few times its accuracy for the surface it starts from.
+static DBL Own_Blindness(const ObjectBase& object, DBL stretch)
+{
+	const DBL depth = (dynamic_cast<const Blob *>(&object) != NULL ? 1e-2 : 1e-4) * max(1.0, stretch);
+	return max(dynamic_cast<const IsoSurface *>(&object) != NULL ? MIN_ISECT_DEPTH : depth, 5.0 * Own_Vagueness(object, stretch));
+}
+
+DBL Blind_Depth(const ObjectBase& object)
+{
+	return Most_Of(object, Own_Blindness);
+}
+
+DBL Vague_Depth(const ObjectBase& object)
+{
+	return Most_Of(object, Own_Vagueness);
 }
 
 std::string Object_Name(const ObjectBase& object)

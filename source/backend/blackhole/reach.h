@@ -30,6 +30,8 @@ class Shells
 void Radii(const ObjectBase& object, const Blackhole& hole, DBL& nearest, DBL& farthest);
 /// The depth up to which its own code drops hits, scene units: what lies nearer to a ray's start is missed.
 DBL Blind_Depth(const ObjectBase& object);
+/// How far off a hit's depth may be, scene units: what one chord finds a little behind its end, the next may find before its start.
+DBL Vague_Depth(const ObjectBase& object);
 /// Whether a ray can hit it at all.
 bool Visible(const ObjectBase& object);
 /// Whether some of the object's surface is inside the horizon; tried with chords, so a speck may be missed.
