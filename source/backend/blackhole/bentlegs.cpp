@@ -13,6 +13,7 @@
 #include "backend/blackhole/bentpath.h"
 #include "backend/blackhole/bentsegment.h"
 #include "backend/blackhole/blackholes.h"
+#include "blackhole/closed.h"
 
 // this must be the last file included
 #include "base/povdebug.h"
@@ -88,6 +89,15 @@ bool Bent_Path::Search(const VECTOR from, const Vec3& direction, DBL length, Int
 	return found;
 }
 
+// The same in a scene without objects.
+bool Bent_Path::Nothing_There(const VECTOR from, const Vec3& direction, DBL length, Intersection& isect)
+{
+	Assign_Vec3(state->chord.Direction, direction);
+	Assign_Vector(state->chord.Origin, from);
+	isect.Depth = length;
+	return false;
+}
+
 // The same on a chord, among its candidates only; they are used up.
 bool Bent_Path::Hit_Chord(const Chord_Run::Chord& chord, const Vec3& direction, DBL length, size_t& candidate, const Blackhole& hole, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post)
 {
@@ -134,7 +144,7 @@ void Bent_Path::Pass(const VECTOR from, const Vec3& direction, DBL length)
 bool Bent_Path::Straight(const VECTOR from, const Vec3& direction, DBL length, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post)
 {
 	Bent_Segment& s = *state;
-	const bool found = Search(from, direction, length, isect, pre, post);
+	const bool found = bent->holes.Tree().Empty() ? Nothing_There(from, direction, length, isect) : Search(from, direction, length, isect, pre, post);
 	s.has_tangent = false;
 	if(bent->recorder != NULL)
 	{
@@ -225,6 +235,24 @@ bool Bent_Path::Along_Chords(size_t index, Intersection& isect, const RayObjectC
 	return false;
 }
 
+// Through one effect sphere where nothing happens on the way: the closed form alone.
+bool Bent_Path::Leave(const Blackhole& hole, VECTOR from, Vec3& direction)
+{
+	Bent_Segment& s = *state;
+	blackhole::Escape exit;
+	s.moved = true;
+	s.captured = !escape(hole.To_Hole(from), direction, hole.Settings().effect_radius, exit);
+	bent->counts.Captured += s.captured;
+	if(s.captured)
+		return false;
+	bent->counts.Most_Swept = max(bent->counts.Most_Swept, exit.phi);
+	direction = exit.tangent;
+	hole.To_Scene(hole.Settings().effect_radius * exit.at, from);
+	Assign_Vec3(s.chord.Direction, direction);
+	Assign_Vector(s.chord.Origin, from);
+	return false;
+}
+
 // Through one effect sphere. On true the chord in hand hit something; otherwise from and direction are where the
 // ray left the sphere, unless it was captured or ended (state->end).
 bool Bent_Path::Through(size_t index, VECTOR from, Vec3& direction, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post)
@@ -233,11 +261,16 @@ bool Bent_Path::Through(size_t index, VECTOR from, Vec3& direction, Intersection
 	const Blackhole& hole = *bent->holes.Holes()[index];
 	const Shells& shells = bent->holes.Shells_Of(index);
 	Blackhole_Counts& counts = bent->counts;
+	// Only what the scene requires: no chords where nothing can be hit, filled, recorded or measured along them; and no path
+	// where its length is not wanted either, by something beyond the sphere that fades, or radiosity.
+	const bool chords = !shells.Empty() || s.volume || (bent->recorder != NULL) || (s.budget < BOUND_HUGE);
+	counts.Entered++;
+	if(!chords && !bent->holes.Far_Objects())
+		return Leave(hole, from, direction);
 	blackhole::Path& path = bent->path;
 	const bool solved = path.solve(hole.To_Hole(from), direction, hole.Settings());
 	const bool captured = (path.outcome() == blackhole::Outcome::captured);
 
-	counts.Entered++;
 	counts.Captured += captured;
 	counts.Nudged += path.nudged();
 	counts.Failed += !solved;
@@ -246,16 +279,14 @@ bool Bent_Path::Through(size_t index, VECTOR from, Vec3& direction, Intersection
 	if(!path.nudged())
 		counts.Drift = max(counts.Drift, path.drift());
 
-	// Only what the scene requires: no chords where nothing can be hit, filled, recorded or measured along them.
-	if(!shells.Empty() || s.volume || (bent->recorder != NULL) || (s.budget < BOUND_HUGE))
+	if(chords)
 	{
 		if(Along_Chords(index, isect, pre, post))
 			return true;
 		if(*s.end != 0)
 			return false;
 	}
-	// Without chords the way's length is still wanted, if something beyond the sphere can be hit: it fades, radiosity asks.
-	else if(bent->holes.Far_Objects() && !captured)
+	else if(!captured)
 		s.travelled += path.length() * hole.Radius;
 	s.moved = true;
 	s.captured = captured;

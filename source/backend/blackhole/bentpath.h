@@ -57,6 +57,8 @@ class Bent_Path
 		bool Straight(const VECTOR from, const blackhole::Vec3& direction, DBL length, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
 		bool Through(size_t hole, VECTOR from, blackhole::Vec3& direction, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
 		bool Search(const VECTOR from, const blackhole::Vec3& direction, DBL length, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
+		bool Nothing_There(const VECTOR from, const blackhole::Vec3& direction, DBL length, Intersection& isect);
+		bool Leave(const Blackhole& hole, VECTOR from, blackhole::Vec3& direction);
 		bool Along_Chords(size_t hole, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
 		bool Hit_Chord(const Chord_Run::Chord& chord, const blackhole::Vec3& direction, DBL length, size_t& candidate, const Blackhole& hole, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
 		void Pass(const VECTOR from, const blackhole::Vec3& direction, DBL length);

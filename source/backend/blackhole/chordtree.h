@@ -62,6 +62,7 @@ class Chord_Tree
 		void Build(const std::vector<ObjectPtr>& scene, DBL margin);
 		/// The radii at which the objects may be hit around a hole, for Find().
 		std::vector<std::pair<DBL, DBL> > Radii_Around(const Blackhole& hole) const;
+		bool Empty() const { return objects.empty(); }
 		ObjectPtr Object(unsigned int i) const { return objects[i]; }
 
 		void Find(const Chord_Run& run, const std::vector<std::pair<DBL, DBL> >& radii, Chord_Candidates& out) const;
