@@ -54,7 +54,7 @@ void Chords::load(std::size_t i) {
 // The point where it stands.
 void Chords::place() {
 	const Orbit& orbit = path_.orbit();
-	const double u = curve_.at(t_);
+	const double u = path_.u_at({i_, t_}, curve_);
 	phi_ = orbit.k * (path_.nodes()[i_].s + t_ * length_);
 	r_ = 1 / u;
 	point_ = orbit.point(u, std::cos(phi_), std::sin(phi_));

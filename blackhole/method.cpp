@@ -17,7 +17,10 @@ bool find_method(const char* name, Method& method) {
 
 const Integrator& integrator_of(Method method) {
 	switch (method) {
+	case Method::dopri5:
+		return dopri5;
 	case Method::rk4:
+	case Method::exact:
 		break;
 	}
 	return rk4;

@@ -44,7 +44,7 @@ bool Path::finish(const Node& last, double u) {
 bool Path::trace(const Settings& settings) {
 	const double edge = 1 / settings.effect_radius;
 	const Integrator& integrator = integrator_of(settings.method);
-	const Plan plan = integrator.start(orbit_, settings.tolerance);
+	Plan plan = integrator.start(orbit_, settings.tolerance);
 	nodes_.clear();
 	nodes_.push_back({0, orbit_.u, orbit_.w, acceleration(orbit_.u, plan.k2)});
 	emerged_ = 0;
@@ -71,11 +71,48 @@ bool Path::trace(const Settings& settings) {
 	return false;
 }
 
+// The closed form says where the path ends; nodes on the way are laid as densely as the quintic between them is used for,
+// which is to place chords, not their ends.
+bool Path::trace_exactly(const Settings& settings) {
+	constexpr double apart = 0.25; // in the equation's own time
+	const double k = orbit_.k, last = exact_->end(settings.effect_radius) / k;
+	const auto node = [&](double s) {
+		const Exact_Orbit::State at = exact_->at(k * s);
+		return Node{s, at.u, k * at.du, acceleration(at.u, k * k)};
+	};
+	nodes_.clear();
+	nodes_.push_back({0, orbit_.u, orbit_.w, acceleration(orbit_.u, k * k)});
+	const bool comes_out = inside_ && last > 0;
+	emerged_ = comes_out ? exact_->swept(1, false) / k : 0;
+	while (nodes_.size() < most_steps) {
+		const Node& n = nodes_.back();
+		const double s = n.s + 1 / (k * std::sqrt(1 + 3 * n.u) / apart + 1);
+		if (!(s < last))
+			break;
+		nodes_.push_back(node(s));
+	}
+	Node end = node(std::max(last, 0.0));
+	if (nodes_.size() == 1 && !(last > 0))
+		end.s = 1e-300; // never outside: a path of no length
+	else
+		end.u = outcome_ == Outcome::escaped ? 1 / settings.effect_radius : 1;
+	nodes_.push_back(end);
+	return true;
+}
+
 bool Path::solve(const Vec3& x, const Vec3& d, const Settings& settings) {
 	orbit_ = Orbit(x, d);
-	outcome_ = classify(x, d);
 	inside_ = orbit_.r <= 1;
 	nudged_ = false;
+	exact_.reset();
+	if (settings.method == Method::exact) {
+		exact_.emplace(x, d);
+		outcome_ = exact_->outcome();
+		if (!exact_->radial())
+			return trace_exactly(settings);
+		exact_.reset();
+	}
+	outcome_ = classify(x, d);
 	if (trace(settings))
 		return true;
 	// So close to b_c that the integrator's own error decides: the double's neighbour on the right side is
@@ -99,7 +136,13 @@ Vec3 Path::tangent(const Mark& mark) const {
 	const Node &from = nodes_[mark.piece], &to = nodes_[mark.piece + 1];
 	const Piece piece(from, to);
 	const double h = to.s - from.s, phi = orbit_.k * (from.s + mark.t * h);
-	return unit(orbit_.velocity(piece.at(mark.t), piece.slope(mark.t) / h, std::cos(phi), std::sin(phi)));
+	double u = piece.at(mark.t), w = piece.slope(mark.t) / h;
+	if (exact_) {
+		const Exact_Orbit::State at = exact_->at(phi);
+		u = at.u;
+		w = orbit_.k * at.du;
+	}
+	return unit(orbit_.velocity(u, w, std::cos(phi), std::sin(phi)));
 }
 
 double Path::length() const {

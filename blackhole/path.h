@@ -3,8 +3,10 @@
 #ifndef BLACKHOLE_PATH_H
 #define BLACKHOLE_PATH_H
 
+#include "blackhole/closed.h"
 #include "blackhole/method.h"
 
+#include <optional>
 #include <vector>
 
 namespace blackhole {
@@ -42,6 +44,14 @@ public:
 	const std::vector<Node>& nodes() const { return nodes_; }
 	const Orbit& orbit() const { return orbit_; }
 
+	/// u at a mark: by the closed form if the method is exact, else as the piece between the nodes has it.
+	double u_at(const Mark& mark, const Piece& piece) const {
+		if (!exact_)
+			return piece.at(mark.t);
+		const Node &from = nodes_[mark.piece], &to = nodes_[mark.piece + 1];
+		return exact_->at(orbit_.k * (from.s + mark.t * (to.s - from.s))).u;
+	}
+
 	/// Where the path ends and the unit tangent there.
 	Vec3 end() const {
 		const Node& n = nodes_.back();
@@ -68,10 +78,12 @@ public:
 
 private:
 	bool trace(const Settings& settings);
+	bool trace_exactly(const Settings& settings);
 	bool finish(const Node& last, double u);
 
 	Orbit orbit_{{2, 0, 0}, {1, 0, 0}};
 	std::vector<Node> nodes_;
+	std::optional<Exact_Orbit> exact_; // only for Method::exact, and not for radial rays
 	Outcome outcome_ = Outcome::escaped;
 	bool inside_ = false, nudged_ = false;
 	double emerged_ = 0;

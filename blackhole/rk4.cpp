@@ -2,8 +2,6 @@
 /// The classical Runge-Kutta step of fourth order on Binet's equation, with a step chosen beforehand.
 #include "blackhole/method.h"
 
-#include <algorithm>
-
 namespace blackhole {
 namespace {
 
@@ -13,19 +11,13 @@ constexpr double longest = 0.55;
 // keeps the tolerance with room to spare; tests/blackhole/path_test.cpp measures how much.
 constexpr double cost = 0.04;
 
-// An error made early grows by about 1 / |b / b_c - 1| on the way round the photon sphere.
-double conditioning(double b) { return std::clamp(std::fabs(b / critical_b - 1), 1e-3, 1.0); }
-
 Plan start(const Orbit& orbit, double tolerance) {
-	return {orbit.k * orbit.k, orbit.h * orbit.h, cost / (tolerance * conditioning(orbit.h))};
+	return {orbit.k * orbit.k, orbit.h * orbit.h, cost / (tolerance * conditioning(orbit.h)), 0};
 }
 
-Node step(const Node& n, const Plan& plan) {
+Node step(const Node& n, Plan& plan) {
 	const double k2 = plan.k2, u = n.u;
-	double rate = plan.rate;
-	// Inside the horizon the energy is what remains of |v|^2 = 1 + b^2 u^3 when nearly all of it cancels.
-	if (u > 1)
-		rate *= (1 + plan.b2 * u * u * u) / (1 + plan.b2) * (1 + 40 * (1 - 1 / u));
+	const double rate = plan.rate * cancellation(u, plan.b2);
 	const double frequency = std::sqrt(k2 * (1 + 3 * u));
 	// A radial ray is a straight line in s: no error, but the piece must not leap far beyond the horizon.
 	const double h = 1 / (frequency * (1 / longest + std::sqrt(std::sqrt(rate))) + 1);

@@ -54,7 +54,7 @@ INSTANTIATE_TEST_SUITE_P(Language, Refused,
 		Bad{"#declare A = 1e300 * 1e300;\nblackhole { 0, 1 effect_radius A - A }", "effect_radius must exceed", 4},
 		Bad{"blackhole { 0, 1\n\n tolerance 0.2 }", "tolerance must be between 1e-9 and 0.1 radians; it is 0.2", 5},
 		Bad{"blackhole { 0, 1 tolerance 1e-10 }", "tolerance must be between", 3},
-		Bad{"blackhole { 0, 1 method \"euler\" }", "unknown method \"euler\"; known: \"rk4\"", 3},
+		Bad{"blackhole { 0, 1 method \"euler\" }", "unknown method \"euler\"; known: \"rk4\", \"dopri5\", \"exact\"", 3},
 		Bad{"blackhole { 0, 1 camera \"orbiting\" }",
 			"unknown camera \"orbiting\"; known: \"static\", \"falling\", \"coordinate\"", 3},
 		Bad{"blackhole { 0, 1\n scale <1, 2, 1> }", "only moves, rotations and uniform scales", 4},
@@ -129,6 +129,25 @@ TEST(Language, OffGivesTheHoleFreeTwin) {
 	EXPECT_TRUE(none.picture == declared.picture);
 	EXPECT_FALSE(none.picture == on.picture);
 	EXPECT_FALSE(none.picture.samples.empty());
+}
+
+// All methods keep the tolerance, so their pictures are the same to within it.
+TEST(Language, MethodsAgree) {
+	const std::string scene =
+		"sphere { <3, 1, 4>, 1.5 pigment { gradient y } finish { ambient 1 } } plane { y, -3 pigment { gradient x scale 20 } "
+		"finish { ambient 1 } } " +
+		std::string(camera);
+	const Picture rk4 = povray(scene + "blackhole { 0, 1 tolerance 1e-5 }", 48, 36).picture;
+	for (const char* method : {"dopri5", "exact"}) {
+		const Rendering run = povray(scene + "blackhole { 0, 1 tolerance 1e-5 method \"" + method + "\" }", 48, 36);
+		ASSERT_FALSE(run.picture.samples.empty()) << run.text;
+		EXPECT_NE(run.text.find(std::string("method ") + method), std::string::npos);
+		int other = 0;
+		for (std::size_t i = 0; i < rk4.samples.size(); i++)
+			other += std::abs(int(rk4.samples[i]) - int(run.picture.samples[i])) > 0.002 * 65535;
+		EXPECT_LE(other, 20) << method; // of 5184: edges, and rays beside b_c
+		EXPECT_FALSE(rk4 == run.picture) << method;
+	}
 }
 
 TEST(Language, DeclareOnTheCommandLineSetsATolerance) {
