@@ -14,6 +14,21 @@ constexpr double share = 0.5 / 1.25;
 // A ramp's first nodes, in N.
 constexpr double ramp_nodes[] = {1.0 / 128, 1.0 / 32, 1.0 / 8, 1.0 / 2, 1};
 
+// Cosine and sine of a step's angle, at most 0.9, to the last digits: the series, for a fifth of what the general ones cost.
+void turn(double a, double& cosine, double& sine) {
+	const double q = a * a;
+	sine =
+		a *
+		(1 + q * (-1.0 / 6 + q * (1.0 / 120 + q * (-1.0 / 5040 +
+													  q * (1.0 / 362880 + q * (-1.0 / 39916800 +
+																				  q * (1.0 / 6227020800 - q / 1307674368e3)))))));
+	cosine =
+		1 + q * (-0.5 + q * (1.0 / 24 + q * (-1.0 / 720 +
+												q * (1.0 / 40320 + q * (-1.0 / 3628800 + q * (1.0 / 479001600 +
+																								 q * (-1.0 / 87178291200 +
+																										 q / 20922789888e3)))))));
+}
+
 } // namespace
 
 Chords::Chords(const Path& path, double tolerance, bool ramp)
@@ -40,8 +55,14 @@ double Chords::density(std::size_t node) const {
 }
 
 void Chords::load(std::size_t i) {
-	if (i > 0)
+	if (i > 0) {
 		piece_n_ += 0.5 * (d0_ + d1_) * length_;
+		double c, s;
+		turn(path_.orbit().k * length_, c, s);
+		const double was = cosine_;
+		cosine_ = c * was - s * sine_;
+		sine_ = s * was + c * sine_;
+	}
 	i_ = i;
 	t_ = 0;
 	const std::vector<Node>& nodes = path_.nodes();
@@ -55,9 +76,12 @@ void Chords::load(std::size_t i) {
 void Chords::place() {
 	const Orbit& orbit = path_.orbit();
 	const double u = path_.u_at({i_, t_}, curve_);
-	phi_ = orbit.k * (path_.nodes()[i_].s + t_ * length_);
+	const double since = orbit.k * t_ * length_;
+	double c, s;
+	turn(since, c, s);
+	phi_ = orbit.k * path_.nodes()[i_].s + since;
 	r_ = 1 / u;
-	point_ = orbit.point(u, std::cos(phi_), std::sin(phi_));
+	point_ = orbit.to_space({r_ * (c * cosine_ - s * sine_), r_ * (s * cosine_ + c * sine_)});
 }
 
 // Moves to where N reaches target, or to the end.

@@ -45,6 +45,7 @@ private:
 	Piece curve_{{0, 1, 0, 0}, {1, 1, 0, 0}}; // u on the piece
 	Vec3 point_;
 	double r_ = 0, phi_ = 0; // of the point
+	double cosine_ = 1, sine_ = 0; // of the angle at the piece's start
 	void load(std::size_t i);
 };
 

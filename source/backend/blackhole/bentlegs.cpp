@@ -174,7 +174,7 @@ bool Bent_Path::Along_Chords(size_t index, Intersection& isect, const RayObjectC
 	for(bool more = true; more; )
 	{
 		run.Clear();
-		bool reach = false;
+		DBL nearest = HUGE_VAL, farthest = 0.0;
 		while((run.Count() < Chord_Run::MOST) && (more = chords.next(c)))
 		{
 			VECTOR start, end;
@@ -183,11 +183,12 @@ bool Bent_Path::Along_Chords(size_t index, Intersection& isect, const RayObjectC
 			if(emerges)
 				Emerge(start);
 			emerges = false;
-			reach = reach || shells.Overlap(c.nearest, c.farthest);
-			run.Add(start, end, c.nearest, c.farthest, c.at_from, c.at_to);
+			nearest = min(nearest, c.nearest);
+			farthest = max(farthest, c.farthest);
+			run.Add(start, end, c);
 		}
 		bent->candidates.found.clear();
-		if(reach)
+		if(shells.Overlap(nearest, farthest))
 		{
 			run.Bound();
 			bent->holes.Tree().Find(run, bent->holes.Radii_Of(index), bent->candidates);

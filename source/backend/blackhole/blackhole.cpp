@@ -94,17 +94,6 @@ blackhole::Settings Blackhole::Settings() const
 	return s;
 }
 
-blackhole::Vec3 Blackhole::To_Hole(const VECTOR p) const
-{
-	blackhole::Vec3 x = { (p[X] - Center[X]) / Radius, (p[Y] - Center[Y]) / Radius, (p[Z] - Center[Z]) / Radius };
-	return x;
-}
-
-void Blackhole::To_Scene(const blackhole::Vec3& x, VECTOR p) const
-{
-	Make_Vector(p, Center[X] + Radius * x.x, Center[Y] + Radius * x.y, Center[Z] + Radius * x.z);
-}
-
 DBL Blackhole::Distance(const VECTOR p) const
 {
 	DBL d;

@@ -4,6 +4,7 @@
 #ifndef POVRAY_BLACKHOLE_H
 #define POVRAY_BLACKHOLE_H
 
+#include "backend/math/vector.h"
 #include "backend/scene/objects.h"
 #include "blackhole/frames.h"
 #include "blackhole/path.h"
@@ -44,8 +45,15 @@ class Blackhole : public ObjectBase
 		DBL Reach() const { return Effect_Radius > 0.0 ? Effect_Radius : 1000.0 * Radius; }
 		blackhole::Settings Settings() const;
 		/// Scene coordinates to the hole's: relative to the centre, in Schwarzschild radii; and back.
-		blackhole::Vec3 To_Hole(const VECTOR p) const;
-		void To_Scene(const blackhole::Vec3& x, VECTOR p) const;
+		blackhole::Vec3 To_Hole(const VECTOR p) const
+		{
+			const blackhole::Vec3 x = { (p[X] - Center[X]) / Radius, (p[Y] - Center[Y]) / Radius, (p[Z] - Center[Z]) / Radius };
+			return x;
+		}
+		void To_Scene(const blackhole::Vec3& x, VECTOR p) const
+		{
+			Make_Vector(p, Center[X] + Radius * x.x, Center[Y] + Radius * x.y, Center[Z] + Radius * x.z);
+		}
 		/// Distance of a point from the centre, scene units.
 		DBL Distance(const VECTOR p) const;
 		/// Whether the straight segment from p in direction d (unit) over the length meets the horizon.

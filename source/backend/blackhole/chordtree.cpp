@@ -57,17 +57,6 @@ static bool Meets(const Chord_Run::Chord& c, const Chord_Run::Box& box)
 	return true;
 }
 
-void Chord_Run::Add(const VECTOR from, const VECTOR to, DBL nearest, DBL farthest, const blackhole::Mark& at_from, const blackhole::Mark& at_to)
-{
-	Chord& c = chords[count++];
-	Assign_Vector(c.from, from);
-	Assign_Vector(c.to, to);
-	c.nearest = nearest;
-	c.farthest = farthest;
-	c.at_from = at_from;
-	c.at_to = at_to;
-}
-
 void Chord_Run::Bound()
 {
 	for(int j = 0; j < MOST; j++)
@@ -100,7 +89,11 @@ void Chord_Tree::Build(const std::vector<ObjectPtr>& scene, DBL m)
 		}
 		// A plane's box is half of space; so is that of most things as large as this.
 		if(Widest(box) > 1e6)
-			endless.push_back((unsigned int)objects.size());
+		{
+			const Plane *plane = dynamic_cast<const Plane *>(scene[k]);
+			const Endless e = { (unsigned int)objects.size(), (plane != NULL) && (plane->Trans == NULL) ? plane : NULL };
+			endless.push_back(e);
+		}
 		else
 			list.push_back(int(objects.size()));
 		objects.push_back(scene[k]);
@@ -154,11 +147,8 @@ std::vector<std::pair<DBL, DBL> > Chord_Tree::Radii_Around(const Blackhole& hole
 }
 
 // Whether a chord may meet a plane: its ends are on different sides, or one is on it.
-static bool May_Meet(const Chord_Run::Chord& c, const ObjectBase& object, DBL margin)
+static bool May_Meet(const Chord_Run::Chord& c, const Plane *plane, DBL margin)
 {
-	const Plane *plane = dynamic_cast<const Plane *>(&object);
-	if((plane == NULL) || (plane->Trans != NULL))
-		return true;
 	DBL a, b;
 	VDot(a, plane->Normal_Vector, c.from);
 	VDot(b, plane->Normal_Vector, c.to);
@@ -172,10 +162,11 @@ void Chord_Tree::Find(const Chord_Run& run, const std::vector<std::pair<DBL, DBL
 	out.found.clear();
 	for(size_t k = 0; k < endless.size(); k++)
 	{
-		const std::pair<DBL, DBL>& r = radii[endless[k]];
+		const unsigned int object = endless[k].object;
+		const std::pair<DBL, DBL>& r = radii[object];
 		for(int j = 0; j < run.Count(); j++)
-			if((run[j].nearest <= r.second) && (r.first <= run[j].farthest) && May_Meet(run[j], *objects[endless[k]], margin))
-				out.found.push_back(std::make_pair(j, endless[k]));
+			if((run[j].nearest <= r.second) && (r.first <= run[j].farthest) && ((endless[k].plane == NULL) || May_Meet(run[j], endless[k].plane, margin)))
+				out.found.push_back(std::make_pair(j, object));
 	}
 	out.stack.clear();
 	if(!nodes.empty())

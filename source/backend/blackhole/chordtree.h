@@ -9,8 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "backend/math/vector.h"
 #include "backend/blackhole/reach.h"
-#include "blackhole/path.h"
+#include "blackhole/chords.h"
 
 namespace pov
 {
@@ -27,15 +28,23 @@ class Chord_Run
 		};
 
 		void Clear() { count = 0; }
-		/// nearest, farthest: to the hole's centre, in Schwarzschild radii.
-		void Add(const VECTOR from, const VECTOR to, DBL nearest, DBL farthest, const blackhole::Mark& at_from, const blackhole::Mark& at_to);
+		void Add(const VECTOR from, const VECTOR to, const blackhole::Chord& chord)
+		{
+			Chord& c = chords[count++];
+			Assign_Vector(c.from, from);
+			Assign_Vector(c.to, to);
+			c.nearest = chord.nearest;
+			c.farthest = chord.farthest;
+			c.at_from = chord.at_from;
+			c.at_to = chord.at_to;
+		}
 		/// To be called when all are there.
 		void Bound();
 
 		struct Chord
 		{
 			VECTOR from, to;
-			DBL nearest, farthest;
+			DBL nearest, farthest; ///< to the hole's centre, in Schwarzschild radii
 			blackhole::Mark at_from, at_to;
 		};
 		int Count() const { return count; }
@@ -54,6 +63,8 @@ struct Chord_Candidates
 	std::vector<std::pair<int, unsigned int> > found; ///< sorted
 	std::vector<std::pair<int, int> > stack;
 };
+
+class Plane;
 
 class Chord_Tree
 {
@@ -79,7 +90,12 @@ class Chord_Tree
 		std::vector<ObjectPtr> objects;
 		std::vector<Chord_Run::Box> boxes; ///< of the objects
 		std::vector<Node> nodes;
-		std::vector<unsigned int> endless; ///< objects without a useful box
+		struct Endless
+		{
+			unsigned int object;
+			const Plane *plane; ///< or NULL
+		};
+		std::vector<Endless> endless; ///< objects without a useful box
 };
 
 }
