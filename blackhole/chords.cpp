@@ -34,7 +34,8 @@ void turn(double a, double& cosine, double& sine) {
 Chords::Chords(const Path& path, double tolerance, bool ramp)
 	: path_(path), scale_(path.orbit().k * std::sqrt(1.5 * path.orbit().h / (8 * share * tolerance))), ramp_(ramp) {
 	load(0);
-	point_ = path.orbit().to_space(path.orbit().p);
+	place_ = path.orbit().p;
+	point_ = path.orbit().to_space(place_);
 	r_ = path.orbit().r;
 	if (path.started_inside() && path.emerged() == 0)
 		ended_ = true;
@@ -81,7 +82,30 @@ void Chords::place() {
 	turn(since, c, s);
 	phi_ = orbit.k * path_.nodes()[i_].s + since;
 	r_ = 1 / u;
-	point_ = orbit.to_space({r_ * (c * cosine_ - s * sine_), r_ * (s * cosine_ + c * sine_)});
+	place_ = {r_ * (c * cosine_ - s * sine_), r_ * (s * cosine_ + c * sine_)};
+	point_ = orbit.to_space(place_);
+}
+
+void Chords::place_end() {
+	r_ = 1 / path_.nodes().back().u;
+	phi_ = path_.swept();
+	place_ = {r_ * std::cos(phi_), r_ * std::sin(phi_)};
+	point_ = path_.end();
+}
+
+// In the plane, where it stands; of the length that unit energy gives it.
+Vec2 Chords::velocity() const {
+	const double b = path_.orbit().h, out = -std::max(b, 1.0) * curve_.slope(t_) / length_, across = b / r_;
+	const double c = place_.x / r_, s = place_.y / r_;
+	return {out * c - across * s, out * s + across * c};
+}
+
+// N at the end of so many chords.
+double Chords::target(int count) const {
+	constexpr int ramp_count = static_cast<int>(std::size(ramp_nodes));
+	if (!ramp_)
+		return count;
+	return count <= ramp_count ? ramp_nodes[count - 1] : count - ramp_count + 1;
 }
 
 // Moves to where N reaches target, or to the end.
@@ -107,20 +131,13 @@ void Chords::advance(double target) {
 bool Chords::next(Chord& chord) {
 	if (ended_)
 		return false;
-	constexpr int ramp_count = static_cast<int>(std::size(ramp_nodes));
-	count_++;
-	double target = count_;
-	if (ramp_)
-		target = count_ <= ramp_count ? ramp_nodes[count_ - 1] : count_ - ramp_count + 1;
 	const double r = r_, phi = phi_;
 	chord.from = point_;
 	chord.at_from = {i_, t_};
-	advance(target);
-	if (ended_) {
-		point_ = path_.end();
-		r_ = 1 / path_.nodes().back().u;
-		phi_ = path_.swept();
-	} else
+	advance(target(++count_));
+	if (ended_)
+		place_end();
+	else
 		place();
 	chord.to = point_;
 	chord.at_to = {i_, t_};
@@ -129,6 +146,36 @@ bool Chords::next(Chord& chord) {
 	const double half = 0.5 * (phi_ - phi);
 	chord.farthest = std::max(r, r_);
 	chord.nearest = std::min(r, r_) * std::max(0.0, 1 - 0.5 * half * half);
+	return true;
+}
+
+bool Chords::next(Arc& arc, int chords) {
+	if (ended_)
+		return false;
+	const double r = r_, phi = phi_, n = count_ > 0 ? target(count_) : 0;
+	const Vec2 from = place_, v = velocity();
+	arc.from = point_;
+	count_ += chords;
+	advance(target(count_));
+	if (ended_)
+		place_end();
+	else
+		place();
+	arc.to = point_;
+	arc.chords = ended_ ? std::min(chords, 1 + static_cast<int>(piece_n_ + 0.5 * (d0_ + d1_) * length_ - n)) : chords;
+
+	const Vec2 to = place_, u = velocity(), along = to - from;
+	const double across = cross(v, u);
+	// Where it is as good as straight, the middle will do.
+	const double a =
+		std::fabs(across) > 1e-9 * length(v) * length(u) ? cross(along, u) / across : 0.5 * length(along) / length(v);
+	const Vec2 apex = from + a * v;
+	arc.apex = path_.orbit().to_space(apex);
+	// Between the chord and the two tangents, as of a circle's arc.
+	arc.length = (2 * length(along) + length(apex - from) + length(to - apex)) / 3;
+	const double half = 0.5 * (phi_ - phi);
+	arc.farthest = std::max(r, r_);
+	arc.nearest = std::min(r, r_) * std::max(0.0, 1 - 0.5 * half * half);
 	return true;
 }
 

@@ -19,6 +19,15 @@ struct Chord {
 	double farthest;     ///< none is farther
 };
 
+/// A few chords in a row, taken as one: their arc lies in the triangle of its ends and the apex where its end tangents meet,
+/// since a path bends one way only.
+struct Arc {
+	Vec3 from, to, apex;
+	double nearest, farthest; ///< as a chord's
+	double length;            ///< of the arc, to fourth order in its angle
+	int chords;
+};
+
 /// Walks a solved path chord by chord. The path must outlive it and not change.
 class Chords {
 public:
@@ -26,11 +35,16 @@ public:
 	Chords(const Path& path, double tolerance, bool ramp);
 	/// The next chord; false after the last. Chords of a ray that starts inside the horizon begin where it emerges.
 	bool next(Chord& chord);
+	/// The next so many chords as one; false after the last. To walk them one by one after all, keep a copy from before.
+	bool next(Arc& arc, int chords);
 
 private:
 	double density(std::size_t node) const;
 	void advance(double target);
 	void place();
+	void place_end();
+	double target(int count) const;
+	Vec2 velocity() const;
 
 	const Path& path_;
 	double scale_;
@@ -43,8 +57,9 @@ private:
 	int count_ = 0;
 	bool ramp_, ended_ = false;
 	Piece curve_{{0, 1, 0, 0}, {1, 1, 0, 0}}; // u on the piece
+	Vec2 place_{};                            // the point in the orbit's plane, and in space
 	Vec3 point_;
-	double r_ = 0, phi_ = 0; // of the point
+	double r_ = 0, phi_ = 0;       // of the point
 	double cosine_ = 1, sine_ = 0; // of the angle at the piece's start
 	void load(std::size_t i);
 };

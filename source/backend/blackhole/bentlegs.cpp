@@ -23,107 +23,12 @@ namespace pov
 
 using blackhole::Vec3;
 
-// POV-Ray drops hits nearer than MIN_ISECT_DEPTH to a ray's start, and some shapes drop more (Blind_Depth in reach.h).
-// Chords after the first therefore start early, by twice the most that any shape here is blind for, though not behind
-// the ray's own origin ...
-static DBL Back_Up(bool moved, DBL travelled, DBL blind)
-{
-	return moved ? min(2.0 * blind, 0.9 * travelled) : 0.0;
-}
-
-// ... and accept what lies beyond the joint, less a little so that rounding, or vague hits, on both sides leave no gap: the
-// least depth a hit may have, on a chord of this length. It also is as far from the ray's own origin as POV-Ray wants it.
-static DBL Least_Depth(DBL back, DBL vague, DBL travelled, DBL length)
-{
-	if(back == 0.0)
-		return 0.0;
-	const DBL overlap = min(0.5 * back, max(vague, min(0.2 * MIN_ISECT_DEPTH, 1e-3 * length)));
-	return max(back - overlap, back + MIN_ISECT_DEPTH - travelled);
-}
-
-// A surface exactly at the horizon is not outside it; intersections are good to far less than this part of its radius.
-static const DBL HORIZON = 1e-6;
-
-// Keeps what POV-Ray keeps, beyond the joint and outside the horizon.
-struct Chord_Condition : public RayObjectCondition
-{
-	Chord_Condition(const RayObjectCondition& c, DBL l, const Blackhole *h) : condition(c), least(l), hole(h) { }
-	virtual bool operator()(const Ray& ray, const ObjectBase *object, DBL depth) const
-	{
-		if(depth < least)
-			return false;
-		if(hole != NULL)
-		{
-			VECTOR p;
-			VEvaluateRay(p, ray.Origin, depth, ray.Direction);
-			if(hole->Distance(p) <= hole->Radius * (1.0 + HORIZON))
-				return false;
-		}
-		return condition(ray, object, depth);
-	}
-	const RayObjectCondition& condition;
-	DBL least;
-	const Blackhole *hole;
-};
-
 void Bent_Path::Record(const VECTOR from, const VECTOR to, size_t hole, bool tested)
 {
 	if(bent->recorder == NULL)
 		return;
 	Recorded_Ray::Chord c = { Vec3_Of(from), Vec3_Of(to), hole == NO_HOLE ? -1 : int(hole), tested };
 	bent->recorder->rays[state->record].Chords.push_back(c);
-}
-
-// Looks for a hit on a straight piece of the way; on return the chord in hand is that piece, and a hit's depth is from its start.
-bool Bent_Path::Search(const VECTOR from, const Vec3& direction, DBL length, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post)
-{
-	Bent_Segment& s = *state;
-	const DBL back = Back_Up(s.moved, s.travelled, bent->holes.Blind());
-	Assign_Vec3(s.chord.Direction, direction);
-	VEvaluateRay(s.chord.Origin, from, -back, s.chord.Direction);
-	isect.Depth = length + back;
-	const Chord_Condition condition(post, Least_Depth(back, bent->holes.Vague(), s.travelled, length), NULL);
-	const bool found = bent->trace.FindIntersection(isect, s.chord, pre, condition);
-	Assign_Vector(s.chord.Origin, from);
-	isect.Depth = max(0.0, isect.Depth - back);
-	return found;
-}
-
-// The same in a scene without objects.
-bool Bent_Path::Nothing_There(const VECTOR from, const Vec3& direction, DBL length, Intersection& isect)
-{
-	Assign_Vec3(state->chord.Direction, direction);
-	Assign_Vector(state->chord.Origin, from);
-	isect.Depth = length;
-	return false;
-}
-
-// The same on a chord, among its candidates only; they are used up.
-bool Bent_Path::Hit_Chord(const Chord_Run::Chord& chord, const Vec3& direction, DBL length, size_t& candidate, const Blackhole& hole, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post)
-{
-	Bent_Segment& s = *state;
-	const std::vector<std::pair<int, unsigned int> >& found = bent->candidates.found;
-	const int index = found[candidate].first;
-	const DBL blind = bent->holes.Blind(), back = Back_Up(s.moved, s.travelled, blind);
-	const bool near_horizon = (chord.nearest <= 1.0 + 2.0 * HORIZON) || ((chord.nearest - 1.0) * hole.Radius < 2.0 * blind);
-	Assign_Vec3(s.chord.Direction, direction);
-	VEvaluateRay(s.chord.Origin, chord.from, -back, s.chord.Direction);
-	isect.Depth = length + back;
-	const Chord_Condition condition(post, Least_Depth(back, bent->holes.Vague(), s.travelled, length), near_horizon ? &hole : NULL);
-	bool hit = false;
-	for(; (candidate < found.size()) && (found[candidate].first == index); candidate++)
-	{
-		const ObjectPtr object = bent->holes.Tree().Object(found[candidate].second);
-		Intersection here;
-		if(pre(s.chord, object, 0.0) && bent->trace.FindIntersection(object, here, s.chord, condition, isect.Depth) && (here.Depth < isect.Depth))
-		{
-			isect = here;
-			hit = true;
-		}
-	}
-	Assign_Vector(s.chord.Origin, chord.from);
-	isect.Depth = max(0.0, isect.Depth - back);
-	return hit;
 }
 
 // A piece of the way that hit nothing.
@@ -158,82 +63,6 @@ bool Bent_Path::Straight(const VECTOR from, const Vec3& direction, DBL length, I
 	}
 	s.moved = true;
 	return found;
-}
-
-// Along the chords of the path that was solved last, a run of them at a time. False if nothing is hit; state->end may be set.
-bool Bent_Path::Along_Chords(size_t index, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post)
-{
-	Bent_Segment& s = *state;
-	const Blackhole& hole = *bent->holes.Holes()[index];
-	const Shells& shells = bent->holes.Shells_Of(index);
-	Blackhole_Counts& counts = bent->counts;
-	Chord_Run& run = bent->run;
-	blackhole::Chords chords(bent->path, hole.Tolerance, !s.moved && !original.IsPrimaryRay());
-	blackhole::Chord c;
-	bool emerges = bent->path.started_inside();
-	for(bool more = true; more; )
-	{
-		run.Clear();
-		DBL nearest = HUGE_VAL, farthest = 0.0;
-		while((run.Count() < Chord_Run::MOST) && (more = chords.next(c)))
-		{
-			VECTOR start, end;
-			hole.To_Scene(c.from, start);
-			hole.To_Scene(c.to, end);
-			if(emerges)
-				Emerge(start);
-			emerges = false;
-			nearest = min(nearest, c.nearest);
-			farthest = max(farthest, c.farthest);
-			run.Add(start, end, c);
-		}
-		bent->candidates.found.clear();
-		if(shells.Overlap(nearest, farthest))
-		{
-			run.Bound();
-			bent->holes.Tree().Find(run, bent->holes.Radii_Of(index), bent->candidates);
-		}
-		size_t candidate = 0;
-		for(int i = 0; i < run.Count(); i++)
-		{
-			const Chord_Run::Chord& chord = run[i];
-			Vec3 along = Vec3_Of(chord.to) - Vec3_Of(chord.from);
-			const DBL chord_length = length(along), remains = s.budget - s.travelled;
-			const bool test = (candidate < bent->candidates.found.size()) && (bent->candidates.found[candidate].first == i);
-			counts.Chords++;
-			s.chords++;
-			(test ? counts.Tested : counts.Skipped)++;
-			if(chord_length == 0.0)
-			{
-				while((candidate < bent->candidates.found.size()) && (bent->candidates.found[candidate].first == i))
-					candidate++;
-				continue;
-			}
-			along = (1.0 / chord_length) * along;
-			const bool found = test && Hit_Chord(chord, along, min(chord_length, remains), candidate, hole, isect, pre, post);
-			s.moved = true;
-			Record(chord.from, found ? isect.IPoint : chord.to, index, test);
-			if(found)
-			{
-				// The quadratic through both tangents whose mean is the chord.
-				const DBL t = min(1.0, isect.Depth / chord_length);
-				const Vec3 from = bent->path.tangent(chord.at_from), to = bent->path.tangent(chord.at_to);
-				s.tangent = unit((1.0 - 4.0 * t + 3.0 * t * t) * from + (3.0 * t * t - 2.0 * t) * to + (6.0 * t - 6.0 * t * t) * along);
-				s.has_tangent = true;
-				return true;
-			}
-			if(chord_length >= remains)
-			{
-				Assign_Vector(s.chord.Origin, chord.from);
-				Assign_Vec3(s.chord.Direction, along);
-				isect.Depth = remains;
-				s.end = "max distance";
-				return false;
-			}
-			Pass(chord.from, along, chord_length);
-		}
-	}
-	return false;
 }
 
 // Through one effect sphere where nothing happens on the way: the closed form alone.
@@ -282,7 +111,10 @@ bool Bent_Path::Through(size_t index, VECTOR from, Vec3& direction, Intersection
 
 	if(chords)
 	{
-		if(Along_Chords(index, isect, pre, post))
+		// As many chords as turn by a third of a radian or so; a single one is no arc.
+		const int in_arc = min(16, int(0.12 / sqrt(hole.Tolerance)));
+		const bool every = (in_arc < 2) || s.volume || (bent->recorder != NULL) || (s.budget < BOUND_HUGE) || path.started_inside();
+		if(every ? Along_Chords(index, isect, pre, post) : Along_Arcs(index, in_arc, isect, pre, post))
 			return true;
 		if(*s.end != 0)
 			return false;

@@ -2,7 +2,7 @@
 /// A ray through a scene with holes: straight outside the effect spheres, chord after chord inside.
 ///
 /// trace.cpp's hooks hold a Bent_Path in each TraceRay. bentpath.cpp has the way from sphere to sphere,
-/// bentlegs.cpp what happens on each leg of it, bentvolume.cpp what fills the space along it.
+/// bentlegs.cpp what happens on each leg of it, bentsearch.cpp how hits are found, bentvolume.cpp what fills the space along it.
 #ifndef POVRAY_BENTPATH_H
 #define POVRAY_BENTPATH_H
 
@@ -60,7 +60,9 @@ class Bent_Path
 		bool Nothing_There(const VECTOR from, const blackhole::Vec3& direction, DBL length, Intersection& isect);
 		bool Leave(const Blackhole& hole, VECTOR from, blackhole::Vec3& direction);
 		bool Along_Chords(size_t hole, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
-		bool Hit_Chord(const Chord_Run::Chord& chord, const blackhole::Vec3& direction, DBL length, size_t& candidate, const Blackhole& hole, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
+		bool Along_Arcs(size_t hole, int chords, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
+		bool Along_Chord(const Chord_Run::Chord& chord, const std::vector<unsigned int>& objects, size_t hole, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post, bool& found);
+		bool Hit_Chord(const Chord_Run::Chord& chord, const blackhole::Vec3& direction, DBL length, const std::vector<unsigned int>& objects, const Blackhole& hole, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
 		void Pass(const VECTOR from, const blackhole::Vec3& direction, DBL length);
 		void Emerge(const VECTOR point);
 		void Record(const VECTOR from, const VECTOR to, size_t hole, bool tested);

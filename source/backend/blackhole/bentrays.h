@@ -57,6 +57,8 @@ class Bent_Rays
 		blackhole::Path path;
 		Chord_Run run;
 		Chord_Candidates candidates;
+		std::vector<blackhole::Chords> walks;
+		std::vector<unsigned int> chosen;
 		std::vector<Bent_Segment *> pool; ///< states, by depth of recursion
 		size_t depth;
 		Recorder *recorder;                ///< of the pixel in hand; NULL: not kept

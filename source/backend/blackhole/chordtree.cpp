@@ -66,6 +66,11 @@ void Chord_Run::Bound()
 		{
 			b.lo[i] = j < count ? min(chords[j].from[i], chords[j].to[i]) : HUGE_VAL;
 			b.hi[i] = j < count ? max(chords[j].from[i], chords[j].to[i]) : -HUGE_VAL;
+			if(arcs && (j < count))
+			{
+				b.lo[i] = min(b.lo[i], chords[j].apex[i]);
+				b.hi[i] = max(b.hi[i], chords[j].apex[i]);
+			}
 		}
 	}
 	for(int i = MOST - 1; i > 0; i--)
@@ -89,13 +94,11 @@ void Chord_Tree::Build(const std::vector<ObjectPtr>& scene, DBL m)
 		}
 		// A plane's box is half of space; so is that of most things as large as this.
 		if(Widest(box) > 1e6)
-		{
-			const Plane *plane = dynamic_cast<const Plane *>(scene[k]);
-			const Endless e = { (unsigned int)objects.size(), (plane != NULL) && (plane->Trans == NULL) ? plane : NULL };
-			endless.push_back(e);
-		}
+			endless.push_back((unsigned int)objects.size());
 		else
 			list.push_back(int(objects.size()));
+		const Plane *plane = dynamic_cast<const Plane *>(scene[k]);
+		planes.push_back((plane != NULL) && (plane->Trans == NULL) ? plane : NULL);
 		objects.push_back(scene[k]);
 		boxes.push_back(box);
 	}
@@ -146,26 +149,44 @@ std::vector<std::pair<DBL, DBL> > Chord_Tree::Radii_Around(const Blackhole& hole
 	return radii;
 }
 
-// Whether a chord may meet a plane: its ends are on different sides, or one is on it.
-static bool May_Meet(const Chord_Run::Chord& c, const Plane *plane, DBL margin)
+static DBL Height(const VECTOR p, const Plane *plane)
 {
-	DBL a, b;
-	VDot(a, plane->Normal_Vector, c.from);
-	VDot(b, plane->Normal_Vector, c.to);
-	a += plane->Distance;
-	b += plane->Distance;
-	return (a * b <= 0.0) || (min(fabs(a), fabs(b)) <= margin);
+	DBL h;
+	VDot(h, plane->Normal_Vector, p);
+	return h + plane->Distance;
 }
 
-void Chord_Tree::Find(const Chord_Run& run, const std::vector<std::pair<DBL, DBL> >& radii, Chord_Candidates& out) const
+// Whether a chord, or an arc, may meet a plane: not if all its corners are well on one side.
+static bool May_Meet(const Chord_Run::Chord& c, bool arc, const Plane *plane, DBL margin)
+{
+	const DBL a = Height(c.from, plane), b = Height(c.to, plane), d = arc ? Height(c.apex, plane) : a;
+	return (min(a, min(b, d)) <= margin) && (max(a, max(b, d)) >= -margin);
+}
+
+void Chord_Tree::Choose(const Chord_Run::Chord& chord, const std::vector<std::pair<DBL, DBL> >& radii, const std::vector<unsigned int>& of, std::vector<unsigned int>& out) const
+{
+	out.clear();
+	for(size_t i = 0; i < of.size(); i++)
+	{
+		const std::pair<DBL, DBL>& r = radii[of[i]];
+		if((chord.nearest <= r.second) && (r.first <= chord.farthest) && (planes[of[i]] != NULL ? May_Meet(chord, false, planes[of[i]], margin) : Meets(chord, boxes[of[i]])))
+			out.push_back(of[i]);
+	}
+}
+
+void Chord_Tree::Find(Chord_Run& run, const std::vector<std::pair<DBL, DBL> >& radii, Chord_Candidates& out) const
 {
 	out.found.clear();
+	out.taken = 0;
+	if(run.Count() == 0)
+		return;
+	run.Bound();
 	for(size_t k = 0; k < endless.size(); k++)
 	{
-		const unsigned int object = endless[k].object;
+		const unsigned int object = endless[k];
 		const std::pair<DBL, DBL>& r = radii[object];
 		for(int j = 0; j < run.Count(); j++)
-			if((run[j].nearest <= r.second) && (r.first <= run[j].farthest) && ((endless[k].plane == NULL) || May_Meet(run[j], endless[k].plane, margin)))
+			if((run[j].nearest <= r.second) && (r.first <= run[j].farthest) && ((planes[object] == NULL) || May_Meet(run[j], run.Arcs(), planes[object], margin)))
 				out.found.push_back(std::make_pair(j, object));
 	}
 	out.stack.clear();
@@ -184,7 +205,7 @@ void Chord_Tree::Find(const Chord_Run& run, const std::vector<std::pair<DBL, DBL
 		{
 			const Chord_Run::Chord& c = run[h - Chord_Run::MOST];
 			const std::pair<DBL, DBL>& r = radii[node.object];
-			if((c.nearest <= r.second) && (r.first <= c.farthest) && Meets(c, node.box))
+			if((c.nearest <= r.second) && (r.first <= c.farthest) && (run.Arcs() || Meets(c, node.box)))
 				out.found.push_back(std::make_pair(h - Chord_Run::MOST, (unsigned int)node.object));
 		}
 		else if(leaf || (!one_chord && (Widest(box) > Widest(node.box))))

@@ -33,26 +33,49 @@ class Chord_Run
 			Chord& c = chords[count++];
 			Assign_Vector(c.from, from);
 			Assign_Vector(c.to, to);
-			c.nearest = chord.nearest;
-			c.farthest = chord.farthest;
-			c.at_from = chord.at_from;
-			c.at_to = chord.at_to;
+			c.Set(chord);
+			arcs = false;
 		}
-		/// To be called when all are there.
-		void Bound();
+		/// A run holds either chords or arcs.
+		void Add(const VECTOR from, const VECTOR to, const VECTOR apex, const blackhole::Arc& arc)
+		{
+			Chord& c = chords[count++];
+			Assign_Vector(c.from, from);
+			Assign_Vector(c.to, to);
+			Assign_Vector(c.apex, apex);
+			c.nearest = arc.nearest;
+			c.farthest = arc.farthest;
+			c.length = arc.length;
+			c.chords = arc.chords;
+			arcs = true;
+		}
 
 		struct Chord
 		{
-			VECTOR from, to;
+			VECTOR from, to, apex; ///< apex: of an arc
 			DBL nearest, farthest; ///< to the hole's centre, in Schwarzschild radii
 			blackhole::Mark at_from, at_to;
+			DBL length; ///< of an arc, in Schwarzschild radii
+			int chords; ///< of an arc
+
+			void Set(const blackhole::Chord& c)
+			{
+				nearest = c.nearest;
+				farthest = c.farthest;
+				at_from = c.at_from;
+				at_to = c.at_to;
+			}
 		};
 		int Count() const { return count; }
+		bool Arcs() const { return arcs; }
+		/// Makes the boxes; to be called when all are there.
+		void Bound();
 		const Chord& operator[](int i) const { return chords[i]; }
 		/// The boxes as a heap: 1 holds all, 2 i and 2 i + 1 are the halves of i, chord j is MOST + j.
 		const Box& Heap(int i) const { return boxes[i]; }
 	private:
 		int count;
+		bool arcs;
 		Chord chords[MOST];
 		Box boxes[2 * MOST];
 };
@@ -62,6 +85,16 @@ struct Chord_Candidates
 {
 	std::vector<std::pair<int, unsigned int> > found; ///< sorted
 	std::vector<std::pair<int, int> > stack;
+	size_t taken;
+	std::vector<unsigned int> objects; ///< of the chord taken last
+
+	/// Takes a chord's objects; chords in ascending order.
+	void Take(int chord)
+	{
+		objects.clear();
+		for(; (taken < found.size()) && (found[taken].first == chord); taken++)
+			objects.push_back(found[taken].second);
+	}
 };
 
 class Plane;
@@ -76,7 +109,9 @@ class Chord_Tree
 		bool Empty() const { return objects.empty(); }
 		ObjectPtr Object(unsigned int i) const { return objects[i]; }
 
-		void Find(const Chord_Run& run, const std::vector<std::pair<DBL, DBL> >& radii, Chord_Candidates& out) const;
+		void Find(Chord_Run& run, const std::vector<std::pair<DBL, DBL> >& radii, Chord_Candidates& out) const;
+		/// Of these objects those that a chord may hit.
+		void Choose(const Chord_Run::Chord& chord, const std::vector<std::pair<DBL, DBL> >& radii, const std::vector<unsigned int>& of, std::vector<unsigned int>& out) const;
 	private:
 		struct Node
 		{
@@ -90,12 +125,8 @@ class Chord_Tree
 		std::vector<ObjectPtr> objects;
 		std::vector<Chord_Run::Box> boxes; ///< of the objects
 		std::vector<Node> nodes;
-		struct Endless
-		{
-			unsigned int object;
-			const Plane *plane; ///< or NULL
-		};
-		std::vector<Endless> endless; ///< objects without a useful box
+		std::vector<const Plane *> planes; ///< of the objects; or NULL
+		std::vector<unsigned int> endless; ///< objects without a useful box
 };
 
 }
