@@ -34,6 +34,7 @@ void turn(double a, double& cosine, double& sine) {
 Chords::Chords(const Path& path, double tolerance, bool ramp)
 	: path_(path), scale_(path.orbit().k * std::sqrt(1.5 * path.orbit().h / (8 * share * tolerance))), ramp_(ramp) {
 	load(0);
+	look();
 	place_ = path.orbit().p;
 	point_ = path.orbit().to_space(place_);
 	r_ = path.orbit().r;
@@ -56,25 +57,30 @@ double Chords::density(std::size_t node) const {
 }
 
 void Chords::load(std::size_t i) {
-	if (i > 0) {
+	if (i > 0)
 		piece_n_ += 0.5 * (d0_ + d1_) * length_;
-		double c, s;
-		turn(path_.orbit().k * length_, c, s);
-		const double was = cosine_;
-		cosine_ = c * was - s * sine_;
-		sine_ = s * was + c * sine_;
-	}
 	i_ = i;
 	t_ = 0;
 	const std::vector<Node>& nodes = path_.nodes();
 	d0_ = i == 0 ? density(0) : d1_;
 	d1_ = density(i + 1);
 	length_ = nodes[i + 1].s - nodes[i].s;
-	curve_ = Piece(nodes[i], nodes[i + 1]);
+}
+
+// Many pieces are only passed through: what it takes to place points on one is made when the first is.
+void Chords::look() {
+	if (looked_ == i_)
+		return;
+	looked_ = i_;
+	const Node &from = path_.nodes()[i_], &to = path_.nodes()[i_ + 1];
+	curve_ = Piece(from, to);
+	cosine_ = std::cos(path_.orbit().k * from.s);
+	sine_ = std::sin(path_.orbit().k * from.s);
 }
 
 // The point where it stands.
 void Chords::place() {
+	look();
 	const Orbit& orbit = path_.orbit();
 	const double u = path_.u_at({i_, t_}, curve_);
 	const double since = orbit.k * t_ * length_;
@@ -87,6 +93,7 @@ void Chords::place() {
 }
 
 void Chords::place_end() {
+	look();
 	r_ = 1 / path_.nodes().back().u;
 	phi_ = path_.swept();
 	place_ = {r_ * std::cos(phi_), r_ * std::sin(phi_)};

@@ -41,6 +41,7 @@ public:
 private:
 	double density(std::size_t node) const;
 	void advance(double target);
+	void look();
 	void place();
 	void place_end();
 	double target(int count) const;
@@ -59,8 +60,9 @@ private:
 	Piece curve_{{0, 1, 0, 0}, {1, 1, 0, 0}}; // u on the piece
 	Vec2 place_{};                            // the point in the orbit's plane, and in space
 	Vec3 point_;
-	double r_ = 0, phi_ = 0;       // of the point
-	double cosine_ = 1, sine_ = 0; // of the angle at the piece's start
+	double r_ = 0, phi_ = 0;               // of the point
+	double cosine_ = 1, sine_ = 0;         // of the angle at the piece's start
+	std::size_t looked_ = std::size_t(-1); // the piece that curve_, cosine_ and sine_ are of
 	void load(std::size_t i);
 };
 

@@ -16,6 +16,11 @@
 namespace pov
 {
 
+static void Widen(Chord_Run::Box& b)
+{
+	b.widest = max(b.hi[0] - b.lo[0], max(b.hi[1] - b.lo[1], b.hi[2] - b.lo[2]));
+}
+
 static void Join(Chord_Run::Box& box, const Chord_Run::Box& a, const Chord_Run::Box& b)
 {
 	for(int i = 0; i < 3; i++)
@@ -23,16 +28,12 @@ static void Join(Chord_Run::Box& box, const Chord_Run::Box& a, const Chord_Run::
 		box.lo[i] = a.lo[i] < b.lo[i] ? a.lo[i] : b.lo[i];
 		box.hi[i] = a.hi[i] > b.hi[i] ? a.hi[i] : b.hi[i];
 	}
+	Widen(box);
 }
 
 static bool Overlap(const Chord_Run::Box& a, const Chord_Run::Box& b)
 {
 	return (a.lo[0] <= b.hi[0]) && (b.lo[0] <= a.hi[0]) && (a.lo[1] <= b.hi[1]) && (b.lo[1] <= a.hi[1]) && (a.lo[2] <= b.hi[2]) && (b.lo[2] <= a.hi[2]);
-}
-
-static DBL Widest(const Chord_Run::Box& b)
-{
-	return max(b.hi[0] - b.lo[0], max(b.hi[1] - b.lo[1], b.hi[2] - b.lo[2]));
 }
 
 // Whether the segment meets the box.
@@ -72,6 +73,7 @@ void Chord_Run::Bound()
 				b.hi[i] = max(b.hi[i], chords[j].apex[i]);
 			}
 		}
+		Widen(b);
 	}
 	for(int i = MOST - 1; i > 0; i--)
 		Join(boxes[i], boxes[2 * i], boxes[2 * i + 1]);
@@ -93,7 +95,8 @@ void Chord_Tree::Build(const std::vector<ObjectPtr>& scene, DBL m)
 			box.hi[i] = hi + more;
 		}
 		// A plane's box is half of space; so is that of most things as large as this.
-		if(Widest(box) > 1e6)
+		Widen(box);
+		if(box.widest > 1e6)
 			endless.push_back((unsigned int)objects.size());
 		else
 			list.push_back(int(objects.size()));
@@ -190,16 +193,14 @@ void Chord_Tree::Find(Chord_Run& run, const std::vector<std::pair<DBL, DBL> >& r
 				out.found.push_back(std::make_pair(j, object));
 	}
 	out.stack.clear();
-	if(!nodes.empty())
+	// Pairs of boxes that overlap; the wider of each is split.
+	if(!nodes.empty() && Overlap(nodes[0].box, run.Heap(1)))
 		out.stack.push_back(std::make_pair(0, 1));
 	while(!out.stack.empty())
 	{
 		const int n = out.stack.back().first, h = out.stack.back().second;
 		out.stack.pop_back();
 		const Node& node = nodes[n];
-		const Chord_Run::Box& box = run.Heap(h);
-		if(!Overlap(node.box, box))
-			continue;
 		const bool one_chord = (h >= Chord_Run::MOST), leaf = (node.left < 0);
 		if(one_chord && leaf)
 		{
@@ -208,15 +209,17 @@ void Chord_Tree::Find(Chord_Run& run, const std::vector<std::pair<DBL, DBL> >& r
 			if((c.nearest <= r.second) && (r.first <= c.farthest) && (run.Arcs() || Meets(c, node.box)))
 				out.found.push_back(std::make_pair(h - Chord_Run::MOST, (unsigned int)node.object));
 		}
-		else if(leaf || (!one_chord && (Widest(box) > Widest(node.box))))
+		else if(leaf || (!one_chord && (run.Heap(h).widest > node.box.widest)))
 		{
-			out.stack.push_back(std::make_pair(n, 2 * h));
-			out.stack.push_back(std::make_pair(n, 2 * h + 1));
+			for(int i = 2 * h; i <= 2 * h + 1; i++)
+				if(Overlap(node.box, run.Heap(i)))
+					out.stack.push_back(std::make_pair(n, i));
 		}
 		else
 		{
-			out.stack.push_back(std::make_pair(node.left, h));
-			out.stack.push_back(std::make_pair(node.left + 1, h));
+			for(int i = node.left; i <= node.left + 1; i++)
+				if(Overlap(nodes[i].box, run.Heap(h)))
+					out.stack.push_back(std::make_pair(i, h));
 		}
 	}
 	if(out.found.size() > 1)

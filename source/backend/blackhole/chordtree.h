@@ -25,6 +25,7 @@ class Chord_Run
 		struct Box
 		{
 			DBL lo[3], hi[3];
+			DBL widest; ///< hi - lo at most
 		};
 
 		void Clear() { count = 0; }
