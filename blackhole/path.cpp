@@ -13,13 +13,16 @@ constexpr std::size_t most_steps = 200000;
 // Where on the piece u is reached, t in [0, 1]: exactly once, since steps are shorter than the path takes to turn round.
 // Newton, kept in a bracket.
 double crossing(const Piece& piece, double u) {
-	double lo = 0, hi = 1, t = 1;
-	const bool rising = piece.at(1) > piece.at(0);
+	const double at0 = piece.at(0), at1 = piece.at(1);
+	const bool rising = at1 > at0;
+	double lo = 0, hi = 1, t = (u - at0) / (at1 - at0);
+	if (!(t > 0 && t < 1))
+		t = 1;
 	for (int i = 0; i < 60; i++) {
 		const double f = piece.at(t) - u;
 		((f > 0) == rising ? hi : lo) = t;
-		// No better than the rounding of u.
-		if (std::fabs(f) <= 2e-16 * u)
+		// No better than the rounding of the piece's own terms.
+		if (std::fabs(f) <= 4e-16 * std::max(std::fabs(at0), std::fabs(at1)))
 			break;
 		double next = t - f / piece.slope(t);
 		if (!(next > lo && next < hi))
