@@ -160,14 +160,14 @@ Launch::Launch(const Vec3& x, const Vec3& given) {
 	Vec3 d = given;
 	const double d2 = dot(d, d);
 	if (!(d2 > 1e-40 && d2 < 1e40)) // lengths near the ends of the exponent's range
-		d = unit((1 / std::max({std::fabs(d.x), std::fabs(d.y), std::fabs(d.z)})) * d);
+		d = scaled(d);
 	if (measure<double>(x, d, *this)) {
 		outcome = (u < 2.0 / 3 ? outward || kappa > 0 : outward && kappa < 0) ? Outcome::escaped : Outcome::captured;
 		return;
 	}
 	if (!measure<long double>(x, d, *this))
 		measure<Quad>(x, d, *this);
-	outcome = classify(x, d);
+	outcome = classify(x, given);
 	// A ray so near to critical that quadruple precision does not tell takes a side.
 	const bool out = outcome == Outcome::escaped;
 	const bool beyond = u < 2.0 / 3 ? (outward ? kappa > 0 : out) : (outward ? !out : kappa > 0);

@@ -59,15 +59,15 @@ template <typename T> T margin(const Vec3& x, const Vec3& d, T& scale) {
 } // namespace
 
 Outcome classify(const Vec3& x, const Vec3& d) {
-	// Lengths near the ends of the exponent's range would overflow when squared four times.
+	// Lengths near the ends of the exponent's range would overflow when squared four times; quadruple precision's is wide enough.
 	const double m = std::max({std::fabs(d.x), std::fabs(d.y), std::fabs(d.z)});
-	const Vec3 u = (m > 1e30 || m < 1e-30) ? (1 / m) * d : d;
+	const Vec3 u = (m > 1e30 || m < 1e-30) ? scaled(d) : d;
 	double scale;
 	const double quick = margin<double>(x, u, scale);
 	if (std::fabs(quick) > 1e-13 * scale)
 		return quick > 0 ? Outcome::escaped : Outcome::captured;
 	Quad quad_scale;
-	return margin<Quad>(x, u, quad_scale) > 0 ? Outcome::escaped : Outcome::captured;
+	return margin<Quad>(x, d, quad_scale) > 0 ? Outcome::escaped : Outcome::captured;
 }
 
 Orbit::Orbit(const Vec3& x, const Vec3& d) {
