@@ -88,7 +88,10 @@ Orbit::Orbit(const Vec3& x, const Vec3& d) {
 		tangential = 0;
 	}
 	const double hu = r * tangential;
-	const double speed = 1 / std::sqrt(1 - tangential * tangential / r); // = 1 / sqrt(1 - hu^2 / r^3)
+	// The energy's square, 1 - hu^2 / r^3, without cancellation outside the horizon. On it a tangential ray has none: how little is
+	// of no consequence, as the path over phi depends on radial / tangential alone.
+	const double energy2 = radial * radial + tangential * tangential * ((r - 1) / r);
+	const double speed = 1 / std::sqrt(std::max(energy2, 1e-30));
 	p = {r, 0};
 	v = {speed * radial, speed * tangential};
 	h = speed * hu;

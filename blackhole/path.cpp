@@ -64,8 +64,13 @@ bool Path::trace(const Settings& settings) {
 		}
 		if (!within && next.u >= 1 && next.w > 0)
 			return finish(next, 1) && outcome_ == Outcome::captured;
-		if (next.u <= edge && next.w < 0)
-			return finish(next, edge) && outcome_ == Outcome::escaped;
+		if (next.u <= edge && next.w < 0) {
+			finish(next, edge);
+			// The last piece is not quite the step it was cut from: where it came out in that very step is on the piece.
+			if (const Node& last = nodes_.back(); emerged_ > before.s)
+				emerged_ = before.s + crossing(Piece(before, last), 1) * (last.s - before.s);
+			return outcome_ == Outcome::escaped;
+		}
 		nodes_.push_back(next);
 	}
 	return false;
@@ -81,12 +86,12 @@ bool Path::solve(const Vec3& x, const Vec3& d, const Settings& settings) {
 	// So close to b_c that the integrator's own error decides: the double's neighbour on the right side is
 	// followed instead. Nothing else is promised within 0.1 % of b_c, and no ray is lost.
 	const Orbit exact = orbit_;
-	const bool wider = outcome_ == Outcome::escaped;
-	const bool from_outside = exact.r > photon_sphere;
+	const double side = outcome_ == Outcome::escaped ? 1 : -1;
 	for (double nudge = 1e-13; nudge < 2e-3; nudge *= 8) {
-		// Outside the photon sphere a larger b escapes; inside it a smaller one does.
-		const double s = 1 + (wider == from_outside ? nudge : -nudge);
-		const Vec2 v = {exact.v.x, exact.v.y * s};
+		// Turned outward a ray escapes, on either side of the photon sphere and for a tangential one too. By this angle b changes by
+		// about the share nudge of it, wherever the ray starts.
+		const double angle = side * nudge * exact.v.y / blackhole::length(exact.v);
+		const Vec2 v = {exact.v.x + angle * exact.v.y, exact.v.y - angle * exact.v.x};
 		orbit_ = Orbit(exact.to_space(exact.p), exact.to_space(v));
 		nudged_ = true;
 		if (trace(settings))
