@@ -42,7 +42,7 @@ template <typename T> inline bool measure(const Vec3& x, const Vec3& d, Launch& 
 	l.F2 = double(F2);
 	l.B = std::max(1e-300, double(F2 + u * u * (1 - u))); // <= 0 if d had no energy: no ray at all, but no NaN either
 	l.kappa = double(kappa);
-	const T error = F2 * F2 * (1 + F2 * r2) + w * w * (1 + u * u * u * u);
+	const T error = F2 * (u * u + F2 * (1 + F2 * r2)) + w * w * (1 + u * u * u * u);
 	constexpr double digits = sizeof(T) == sizeof(double) ? 400 : 8e5;
 	return error < T(digits * digits) * kappa * kappa;
 }
@@ -115,6 +115,8 @@ inline double sweep(const Cubic& c, double x, double qx, double y, double qy, bo
 	const double G = std::max(x, y) > 1 ? 2 * x * y - (1 + c.m) * (x + y - 2 * c.m) : qx * qx + qy * qy - dxy * dxy;
 	double P, M2, U1; // S^2, (U2 - U3)^2
 	if (over) {
+		if (!(G + K2 > 0))
+			return 0; // both at the turning point, to the last digit
 		M2 = (G + K2) / (a * a);
 		P = c.D * (a * a) / (G + K2); // not D / M2: two divisions at once
 		U1 = std::sqrt(0.25 * (P + M2) + 0.5 + 1.5 * c.m);
@@ -151,6 +153,8 @@ inline Vec2 circle(double a) {
 Cubic::Cubic(double B_, double kappa_) : B(B_), kappa(kappa_), m(negative_root(B, std::sqrt(B))) {
 	// D = (1 + m) mu, mu = 1 - 3 m; mu (3 - mu)^2 = 4 kappa: Newton's step gives a small mu the digits of kappa.
 	double mu = 1 - 3 * m;
+	if (std::fabs(mu) < 1e-7)
+		mu = 4.0 / 9 * kappa; // m's own last digit would be more than kappa
 	if (std::fabs(mu) < 0.1)
 		mu = (mu * mu * (2 * mu - 6) + 4 * kappa) / (3 * (3 - mu) * (1 - mu));
 	D = (1 + m) * mu;
