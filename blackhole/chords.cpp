@@ -11,13 +11,21 @@ namespace {
 // curvature that is not constant along a chord.
 constexpr double share = 0.5 / 1.25;
 
+// The rule takes the curvature to be that of all of a chord. Where one chord would take a ray past the hole and far out again,
+// all of the bend is in its middle: it strays by r_far / b there, which may be hundreds of tolerance * b. So no chord sweeps more
+// than about a right angle, unless the bend is nothing at any radius: slack, in b^2 tolerance / r_far.
+constexpr double widest = 1.8, slack = 0.35;
+
 // A ramp's first nodes, in N.
 constexpr double ramp_nodes[] = {1.0 / 128, 1.0 / 32, 1.0 / 8, 1.0 / 2, 1};
+constexpr int ramp_count = static_cast<int>(std::size(ramp_nodes));
 
 } // namespace
 
 Chords::Chords(const Path& path, double tolerance, bool ramp)
 	: path_(path), scale_(path.orbit().k * std::sqrt(1.5 * path.orbit().h / (8 * share * tolerance))), ramp_(ramp) {
+	const double far = std::max(path.orbit().r, 1 / path.nodes().back().u), b = path.orbit().h;
+	widest_ = widest + slack * tolerance * b * b / far;
 	load(0);
 	point_ = path.orbit().to_space(path.orbit().p);
 	r_ = path.orbit().r;
@@ -60,9 +68,10 @@ void Chords::place() {
 	point_ = orbit.point(u, std::cos(phi_), std::sin(phi_));
 }
 
-// Moves to where N reaches target, or to the end.
-void Chords::advance(double target) {
-	while (piece_n_ + 0.5 * (d0_ + d1_) * length_ <= target) {
+// Moves to where N reaches target or phi most, or to the end.
+void Chords::advance(double target, double most) {
+	const double k = path_.orbit().k;
+	while (piece_n_ + 0.5 * (d0_ + d1_) * length_ <= target && k * path_.nodes()[i_ + 1].s <= most) {
 		if (i_ + 2 >= path_.nodes().size()) {
 			t_ = 1;
 			ended_ = true;
@@ -77,13 +86,19 @@ void Chords::advance(double target) {
 		ended_ = true;
 		return;
 	}
-	t_ = std::clamp(2 * c / (d0_ + std::sqrt(std::max(0.0, d0_ * d0_ + 2 * (d1_ - d0_) * c))), 0.0, 1.0);
+	const double t = 2 * c / (d0_ + std::sqrt(std::max(0.0, d0_ * d0_ + 2 * (d1_ - d0_) * c)));
+	const double wide = k * length_ > 0 ? (most / k - path_.nodes()[i_].s) / length_ : 2;
+	if (wide < t) { // N counts on from here
+		t_ = std::clamp(wide, 0.0, 1.0);
+		n_ = piece_n_ + (d0_ + 0.5 * (d1_ - d0_) * t_) * t_ * length_;
+		count_ = ramp_ ? ramp_count - 1 : 0;
+	} else
+		t_ = std::clamp(t, 0.0, 1.0);
 }
 
 bool Chords::next(Chord& chord) {
 	if (ended_)
 		return false;
-	constexpr int ramp_count = static_cast<int>(std::size(ramp_nodes));
 	count_++;
 	double target = count_;
 	if (ramp_)
@@ -91,7 +106,7 @@ bool Chords::next(Chord& chord) {
 	const double r = r_, phi = phi_;
 	chord.from = point_;
 	chord.at_from = {i_, t_};
-	advance(target);
+	advance(n_ + target, phi + widest_);
 	if (ended_) {
 		point_ = path_.end();
 		r_ = 1 / path_.nodes().back().u;

@@ -29,14 +29,14 @@ public:
 
 private:
 	double density(std::size_t node) const;
-	void advance(double target);
+	void advance(double target, double most);
 	void place();
 
 	const Path& path_;
-	double scale_;
+	double scale_, widest_;
 	std::size_t i_ = 0;      // the piece
 	double t_ = 0;           // where on it
-	double n_ = 0;           // N so far
+	double n_ = 0;           // N from which chords are counted
 	double piece_n_ = 0;     // N at the start of the piece
 	double d0_ = 0, d1_ = 0; // density at its ends
 	double length_ = 0;      // its length in s
