@@ -124,7 +124,12 @@ inline double sweep(const Cubic& c, double x, double qx, double y, double qy, bo
 		if (dxy == 0)
 			return 0;
 		const double inv = 1 / dxy;
-		P = a * a * (G < 0 && c.D < 0 ? -c.D / (K2 - G) : (G + K2) * (inv * inv));
+		double c2 = G + K2;
+		// With h = |x - e|, i = |y - e| from the turning point e, c2 = 2 h i + (h + i) E + 2 sqrt(...): its rounding errors must
+		// not take more than all of it where h is next to nothing and E too.
+		if (c.D > 0 && !(c2 > 1e-9 * dxy * dxy))
+			c2 = std::max(c2, dxy * std::sqrt(c.D));
+		P = a * a * (G < 0 && c.D < 0 ? -c.D / (K2 - G) : c2 * (inv * inv));
 		M2 = c.D / P;
 		U1 = (ax * qy + ay * qx) * inv;
 	}

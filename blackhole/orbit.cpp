@@ -73,7 +73,8 @@ Outcome classify(const Vec3& x, const Vec3& d) {
 Orbit::Orbit(const Vec3& x, const Vec3& d) {
 	// In long double, and d as given: b keeps an error of 5e-20 r, where double would leave it 1e-16 r, most of a b far out.
 	using Long = long double;
-	const Long i = Long(x.y) * d.z - Long(x.z) * d.y, j = Long(x.z) * d.x - Long(x.x) * d.z, l = Long(x.x) * d.y - Long(x.y) * d.x;
+	const Long i = Long(x.y) * d.z - Long(x.z) * d.y, j = Long(x.z) * d.x - Long(x.x) * d.z,
+			   l = Long(x.x) * d.y - Long(x.y) * d.x;
 	const Long size = std::sqrt(Long(d.x) * d.x + Long(d.y) * d.y + Long(d.z) * d.z), twist = std::sqrt(i * i + j * j + l * l);
 	const Long distance = std::sqrt(Long(x.x) * x.x + Long(x.y) * x.y + Long(x.z) * x.z);
 	r = double(distance);
@@ -89,8 +90,8 @@ Orbit::Orbit(const Vec3& x, const Vec3& d) {
 		tangential = 0;
 	}
 	const double hu = r * tangential;
-	// The energy's square, 1 - hu^2 / r^3, without cancellation outside the horizon. On it a tangential ray has none: how little is
-	// of no consequence, as the path over phi depends on radial / tangential alone.
+	// The energy's square, 1 - hu^2 / r^3, without cancellation outside the horizon. On it a tangential ray has none: how little
+	// is of no consequence, as the path over phi depends on radial / tangential alone.
 	const double energy2 = radial * radial + tangential * tangential * ((r - 1) / r);
 	const double speed = 1 / std::sqrt(std::max(energy2, 1e-30));
 	p = {r, 0};

@@ -7,7 +7,8 @@ namespace blackhole {
 namespace {
 
 // A ray that is not within a rounding of b_c (1e-16) sweeps less than 41 radians; one that is, or that starts within one of the
-// photon sphere, would wind on until rounding decides, or for ever: it is nudged. So rk4 takes at most 2 + 90 (1/0.55 + rate^(1/4))
+// photon sphere, would wind on until rounding decides, or for ever: it is nudged. So rk4 takes at most 2 + 90 (1/0.55 +
+// rate^(1/4))
 // + 45 steps outside the horizon, 41,000 at a tolerance of 1e-9 (its step is at least 1 / (2 k (...) + 1)).
 constexpr double most_swept = 45;
 constexpr std::size_t most_steps = 200000; // no method should come near it
@@ -90,8 +91,8 @@ bool Path::solve(const Vec3& x, const Vec3& d, const Settings& settings) {
 	const Orbit exact = orbit_;
 	const double side = outcome_ == Outcome::escaped ? 1 : -1;
 	for (double nudge = 1e-13; nudge < 2e-3; nudge *= 8) {
-		// Turned outward a ray escapes, on either side of the photon sphere and for a tangential one too. By this angle b changes by
-		// about the share nudge of it, wherever the ray starts.
+		// Turned outward a ray escapes, on either side of the photon sphere and for a tangential one too. By this angle b changes
+		// by about the share nudge of it, wherever the ray starts.
 		const double angle = side * nudge * exact.v.y / blackhole::length(exact.v);
 		const Vec2 v = {exact.v.x + angle * exact.v.y, exact.v.y - angle * exact.v.x};
 		orbit_ = Orbit(exact.to_space(exact.p), exact.to_space(v));
@@ -106,7 +107,9 @@ Vec3 Path::tangent(const Mark& mark) const {
 	const Node &from = nodes_[mark.piece], &to = nodes_[mark.piece + 1];
 	const Piece piece(from, to);
 	const double h = to.s - from.s, phi = orbit_.k * (from.s + mark.t * h);
-	return unit(orbit_.velocity(piece.at(mark.t), piece.slope(mark.t) / h, std::cos(phi), std::sin(phi)));
+	// A path that starts where it ends has a piece of no length.
+	const double w = h > 0 ? piece.slope(mark.t) / h : to.w;
+	return unit(orbit_.velocity(piece.at(mark.t), w, std::cos(phi), std::sin(phi)));
 }
 
 double Path::length() const {
