@@ -28,7 +28,8 @@ Node step(const Node& n, const Plan& plan) {
 		rate *= (1 + plan.b2 * u * u * u) / (1 + plan.b2) * (1 + 40 * (1 - 1 / u));
 	const double frequency = std::sqrt(k2 * (1 + 3 * u));
 	// A radial ray is a straight line in s: no error, but the piece must not leap far beyond the horizon.
-	const double h = 1 / (frequency * (1 / longest + std::sqrt(std::sqrt(rate))) + 1);
+	// Deep inside it may: halving u is near enough.
+	const double h = 1 / (frequency * (1 / longest + std::sqrt(std::sqrt(rate))) + (u > 2 ? 2 / u : 1));
 
 	const double half = 0.5 * h, v = half * n.w;
 	const double a2 = acceleration(u + v, k2);
