@@ -14,7 +14,7 @@ constexpr double share = 0.5 / 1.25;
 // The rule takes the curvature to be that of all of a chord. Where one chord would take a ray past the hole and far out again,
 // all of the bend is in its middle: it strays by r_far / b there, which may be hundreds of tolerance * b. So no chord sweeps more
 // than about a right angle, unless the bend is nothing at any radius: slack, in b^2 tolerance / r_far. (And what is a hair of the
-// tolerance at the far end is many times b, beyond some hundred b: then two chords at least in any case.)
+// tolerance at the far end is much of b, beyond ten of b: no slack there.)
 constexpr double widest = 1.8, slack = 0.35;
 
 // A ramp's first nodes, in N.
@@ -26,7 +26,7 @@ constexpr int ramp_count = static_cast<int>(std::size(ramp_nodes));
 Chords::Chords(const Path& path, double tolerance, bool ramp)
 	: path_(path), scale_(path.orbit().k * std::sqrt(1.5 * path.orbit().h / (8 * share * tolerance))), ramp_(ramp) {
 	const double far = std::max(path.orbit().r, 1 / path.nodes().back().u), b = path.orbit().h;
-	widest_ = widest + slack * tolerance * b * b / far * std::min(1.0, 100 * b / far);
+	widest_ = widest + std::min(slack * tolerance * b * b / far, 12 * b / far);
 	load(0);
 	point_ = path.orbit().to_space(path.orbit().p);
 	r_ = path.orbit().r;

@@ -112,7 +112,10 @@ TEST(Extremes_Found, StaysMended) {
 		{{21231.096651302487, 0, 0}, {-0.9867, 0.1608, 0}, {21231.096651302487, 0.00102, Method::rk4}}, // one chord for all of it
 		{{1e12, 0, 0}, {-1, 2e-9, 0}, {1e12, 0.001, Method::rk4}}, // the same, hundreds of tolerances off
 		{{929265146191.65271, 0, 0}, {-0.99999999965, 2.6e-5, 0},
-			{929265146191.65271, 0.1, Method::rk4}},           // and its end was far off
+			{929265146191.65271, 0.1, Method::rk4}},                // and its end was far off
+		{{1e12, 0, 0}, {-1, 5.83e-4, 0}, {1e12, 0.1, Method::rk4}}, // likewise
+		{{983627998785.0105, 0, 0}, {-0x1.fff18982a4065p-1, 0x1.e6c571c22dff8p-7, 0},
+			{983627998785.0105, 1e-4, Method::rk4}},           // and
 		{{1e-6 + 1e-7, 0, 0}, {1, 0, 0}, {R, t, Method::rk4}}, // a million steps
 	};
 	Path path;
