@@ -23,9 +23,10 @@ Plan start(const Orbit& orbit, double tolerance) {
 Node step(const Node& n, const Plan& plan) {
 	const double k2 = plan.k2, u = n.u;
 	double rate = plan.rate;
-	// Inside the horizon the energy is what remains of |v|^2 = 1 + b^2 u^3 when nearly all of it cancels.
+	// Inside the horizon the energy is what remains of |v|^2 = 1 + b^2 u^3 when nearly all of it cancels. Beyond 1e8 rounding has
+	// taken what steps could save.
 	if (u > 1)
-		rate *= (1 + plan.b2 * u * u * u) / (1 + plan.b2) * (1 + 40 * (1 - 1 / u));
+		rate *= std::min(1e8, (1 + plan.b2 * u * u * u) / (1 + plan.b2)) * (1 + 40 * (1 - 1 / u));
 	const double frequency = std::sqrt(k2 * (1 + 3 * u));
 	// A radial ray is a straight line in s: no error, but the piece must not leap far beyond the horizon.
 	// Deep inside it may: halving u is near enough.
