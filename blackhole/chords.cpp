@@ -11,8 +11,17 @@ namespace {
 // curvature that is not constant along a chord.
 constexpr double share = 0.5 / 1.25;
 
+// The rule takes the curvature to be that of all of a chord. Where one chord would take a ray past the hole and far out again,
+// all of the bend is in its middle: it strays by r_far / b there, which may be hundreds of tolerance * b. So no chord sweeps more
+// than about a right angle, unless the bend is nothing at any radius: slack, in b^2 tolerance / r_far. (And what is a hair of the
+// tolerance at the far end is much of b, beyond ten of b: no slack there.)
+constexpr double widest = 1.8, slack = 0.35;
+// The most that an arc of several chords may sweep.
+constexpr double widest_arc = 0.7;
+
 // A ramp's first nodes, in N.
 constexpr double ramp_nodes[] = {1.0 / 128, 1.0 / 32, 1.0 / 8, 1.0 / 2, 1};
+constexpr int ramp_count = static_cast<int>(std::size(ramp_nodes));
 
 // Cosine and sine of a step's angle, at most 0.9, to the last digits: the series, for a fifth of what the general ones cost.
 void turn(double a, double& cosine, double& sine) {
@@ -32,7 +41,10 @@ void turn(double a, double& cosine, double& sine) {
 } // namespace
 
 Chords::Chords(const Path& path, double tolerance, bool ramp)
-	: path_(path), scale_(path.orbit().k * std::sqrt(1.5 * path.orbit().h / (8 * share * tolerance))), ramp_(ramp) {
+	: path_(path), tolerance_(tolerance), scale_(path.orbit().k * std::sqrt(1.5 * path.orbit().h / (8 * share * tolerance))),
+	  ramp_(ramp) {
+	const double far = std::max(path.orbit().r, 1 / path.nodes().back().u), b = path.orbit().h;
+	widest_ = widest + std::min(slack * tolerance * b * b / far, 12 * b / far);
 	load(0);
 	look();
 	place_ = path.orbit().p;
@@ -109,19 +121,19 @@ Vec2 Chords::velocity() const {
 
 // N at the end of so many chords.
 double Chords::target(int count) const {
-	constexpr int ramp_count = static_cast<int>(std::size(ramp_nodes));
 	if (!ramp_)
 		return count;
 	return count <= ramp_count ? ramp_nodes[count - 1] : count - ramp_count + 1;
 }
 
-// Moves to where N reaches target, or to the end.
-void Chords::advance(double target) {
-	while (piece_n_ + 0.5 * (d0_ + d1_) * length_ <= target) {
+// Moves to where N reaches target or phi most, or to the end. Whether phi ended it: then N counts on from there.
+bool Chords::advance(double target, double most) {
+	const double k = path_.orbit().k;
+	while (piece_n_ + 0.5 * (d0_ + d1_) * length_ <= target && k * path_.nodes()[i_ + 1].s <= most) {
 		if (i_ + 2 >= path_.nodes().size()) {
 			t_ = 1;
 			ended_ = true;
-			return;
+			return false;
 		}
 		load(i_ + 1);
 	}
@@ -130,9 +142,18 @@ void Chords::advance(double target) {
 	if (!(c >= 0)) { // not a number: no chord is better than chords without end
 		t_ = 1;
 		ended_ = true;
-		return;
+		return false;
 	}
-	t_ = std::clamp(2 * c / (d0_ + std::sqrt(std::max(0.0, d0_ * d0_ + 2 * (d1_ - d0_) * c))), 0.0, 1.0);
+	const double t = 2 * c / (d0_ + std::sqrt(std::max(0.0, d0_ * d0_ + 2 * (d1_ - d0_) * c)));
+	const double wide = k * length_ > 0 ? (most / k - path_.nodes()[i_].s) / length_ : 2;
+	if (wide < t) {
+		t_ = std::clamp(wide, 0.0, 1.0);
+		n_ = piece_n_ + (d0_ + 0.5 * (d1_ - d0_) * t_) * t_ * length_;
+		count_ = ramp_ ? ramp_count - 1 : 0;
+		return true;
+	}
+	t_ = std::clamp(t, 0.0, 1.0);
+	return false;
 }
 
 bool Chords::next(Chord& chord) {
@@ -141,7 +162,8 @@ bool Chords::next(Chord& chord) {
 	const double r = r_, phi = phi_;
 	chord.from = point_;
 	chord.at_from = {i_, t_};
-	advance(target(++count_));
+	count_++;
+	advance(n_ + target(count_), phi + widest_);
 	if (ended_)
 		place_end();
 	else
@@ -159,29 +181,56 @@ bool Chords::next(Chord& chord) {
 bool Chords::next(Arc& arc, int chords) {
 	if (ended_)
 		return false;
-	const double r = r_, phi = phi_, n = count_ > 0 ? target(count_) : 0;
+	const double r = r_, phi = phi_;
 	const Vec2 from = place_, v = velocity();
 	arc.from = point_;
-	count_ += chords;
-	advance(target(count_));
-	if (ended_)
+	arc.chords = chords;
+	// An arc that sweeps much is a poor triangle: then one chord is better. There are few of them.
+	if (path_.swept() > phi + widest_arc && chords > 1) {
+		const std::size_t i = i_;
+		const double t = t_, n = n_, piece_n = piece_n_, d0 = d0_, d1 = d1_, l = length_;
+		const int count = count_;
+		count_ += chords;
+		if (advance(n_ + target(count_), phi + widest_arc)) {
+			i_ = i;
+			t_ = t;
+			n_ = n;
+			piece_n_ = piece_n;
+			d0_ = d0;
+			d1_ = d1;
+			length_ = l;
+			count_ = count + 1;
+			arc.chords = 1;
+			advance(n_ + target(count_), phi + widest_);
+		}
+	} else {
+		count_ += chords;
+		advance(n_ + target(count_), phi + widest_);
+	}
+	if (ended_) {
+		// The last chord is the first whose end the path does not reach.
+		const double last = piece_n_ + 0.5 * (d0_ + d1_) * length_ - n_;
+		int first = count_ - arc.chords + 1;
+		for (arc.chords = 1; first < count_ && target(first) < last; first++)
+			arc.chords++;
 		place_end();
-	else
+	} else
 		place();
 	arc.to = point_;
-	arc.chords = ended_ ? std::min(chords, 1 + static_cast<int>(piece_n_ + 0.5 * (d0_ + d1_) * length_ - n)) : chords;
 
-	const Vec2 to = place_, u = velocity(), along = to - from;
-	const double across = cross(v, u);
-	// Where it is as good as straight, the middle will do.
-	const double a =
-		std::fabs(across) > 1e-9 * length(v) * length(u) ? cross(along, u) / across : 0.5 * length(along) / length(v);
-	const Vec2 apex = from + a * v;
-	arc.apex = path_.orbit().to_space(apex);
-	// Between the chord and the two tangents, as of a circle's arc.
-	arc.length = (2 * length(along) + length(apex - from) + length(to - apex)) / 3;
+	// The triangle of a path's chord and its end tangents, all to one side of it: how steep they are, and its height.
+	const Vec2 u = velocity(), along = place_ - from;
+	const double l = length(along), steep = 100;
+	const auto slope = [&](Vec2 t) {
+		return std::fabs(cross(t, along)) < steep * dot(t, along) ? std::fabs(cross(t, along)) / dot(t, along) : steep;
+	};
+	const double p = slope(v), q = slope(u);
+	// A little for what the method does wrong.
+	arc.bulge = (p + q > 0 ? l * p * q / (p + q) : 0) + (1e-6 + 2e-3 * tolerance_) * l;
+	// Of the cubic with these slopes at its ends.
+	arc.length = l * (1 + (2 * p * p + 2 * q * q + p * q) / 30);
 	const double half = 0.5 * (phi_ - phi);
-	arc.farthest = std::max(r, r_);
+	arc.farthest = std::max(r, r_) + arc.bulge; // inside the photon sphere a path turns back on an arc
 	arc.nearest = std::min(r, r_) * std::max(0.0, 1 - 0.5 * half * half);
 	return true;
 }

@@ -19,13 +19,13 @@ struct Chord {
 	double farthest;     ///< none is farther
 };
 
-/// A few chords in a row, taken as one: their arc lies in the triangle of its ends and the apex where its end tangents meet,
-/// since a path bends one way only.
+/// A few chords in a row, taken as one: their arc stays near the long chord, since a path bends one way only.
 struct Arc {
-	Vec3 from, to, apex;
+	Vec3 from, to;
+	double bulge;             ///< no point of the arc is farther from the long chord
 	double nearest, farthest; ///< as a chord's
-	double length;            ///< of the arc, to fourth order in its angle
-	int chords;
+	double length;            ///< of the arc, as of a cubic
+	int chords;               ///< at most
 };
 
 /// Walks a solved path chord by chord. The path must outlive it and not change.
@@ -35,12 +35,13 @@ public:
 	Chords(const Path& path, double tolerance, bool ramp);
 	/// The next chord; false after the last. Chords of a ray that starts inside the horizon begin where it emerges.
 	bool next(Chord& chord);
-	/// The next so many chords as one; false after the last. To walk them one by one after all, keep a copy from before.
+	/// The next so many chords as one, or a single one where the path is so straight that its width counts, not its bend;
+	/// false after the last. To walk them one by one after all, keep a copy from before.
 	bool next(Arc& arc, int chords);
 
 private:
 	double density(std::size_t node) const;
-	void advance(double target);
+	bool advance(double target, double most);
 	void look();
 	void place();
 	void place_end();
@@ -48,10 +49,10 @@ private:
 	Vec2 velocity() const;
 
 	const Path& path_;
-	double scale_;
+	double tolerance_, scale_, widest_;
 	std::size_t i_ = 0;      // the piece
 	double t_ = 0;           // where on it
-	double n_ = 0;           // N so far
+	double n_ = 0;           // N from which chords are counted
 	double piece_n_ = 0;     // N at the start of the piece
 	double d0_ = 0, d1_ = 0; // density at its ends
 	double length_ = 0;      // its length in s

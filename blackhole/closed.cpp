@@ -42,7 +42,7 @@ template <typename T> inline bool measure(const Vec3& x, const Vec3& d, Launch& 
 	l.F2 = double(F2);
 	l.B = std::max(1e-300, double(F2 + u * u * (1 - u))); // <= 0 if d had no energy: no ray at all, but no NaN either
 	l.kappa = double(kappa);
-	const T error = F2 * F2 * (1 + F2 * r2) + w * w * (1 + u * u * u * u);
+	const T error = F2 * (u * u + F2 * (1 + F2 * r2)) + w * w * (1 + u * u * u * u);
 	constexpr double digits = sizeof(T) == sizeof(double) ? 400 : 8e5;
 	return error < T(digits * digits) * kappa * kappa;
 }
@@ -115,6 +115,8 @@ inline double sweep(const Cubic& c, double x, double qx, double y, double qy, bo
 	const double G = std::max(x, y) > 1 ? 2 * x * y - (1 + c.m) * (x + y - 2 * c.m) : qx * qx + qy * qy - dxy * dxy;
 	double P, M2, U1; // S^2, (U2 - U3)^2
 	if (over) {
+		if (!(G + K2 > 0))
+			return 0; // both at the turning point, to the last digit
 		M2 = (G + K2) / (a * a);
 		P = c.D * (a * a) / (G + K2); // not D / M2: two divisions at once
 		U1 = std::sqrt(0.25 * (P + M2) + 0.5 + 1.5 * c.m);
@@ -122,7 +124,12 @@ inline double sweep(const Cubic& c, double x, double qx, double y, double qy, bo
 		if (dxy == 0)
 			return 0;
 		const double inv = 1 / dxy;
-		P = a * a * (G < 0 && c.D < 0 ? -c.D / (K2 - G) : (G + K2) * (inv * inv));
+		double c2 = G + K2;
+		// With h = |x - e|, i = |y - e| from the turning point e, c2 = 2 h i + (h + i) E + 2 sqrt(...): its rounding errors must
+		// not take more than all of it where h is next to nothing and E too.
+		if (c.D > 0 && !(c2 > 1e-9 * dxy * dxy))
+			c2 = std::max(c2, dxy * std::sqrt(c.D));
+		P = a * a * (G < 0 && c.D < 0 ? -c.D / (K2 - G) : c2 * (inv * inv));
 		M2 = c.D / P;
 		U1 = (ax * qy + ay * qx) * inv;
 	}
@@ -151,6 +158,8 @@ inline Vec2 circle(double a) {
 Cubic::Cubic(double B_, double kappa_) : B(B_), kappa(kappa_), m(negative_root(B, std::sqrt(B))) {
 	// D = (1 + m) mu, mu = 1 - 3 m; mu (3 - mu)^2 = 4 kappa: Newton's step gives a small mu the digits of kappa.
 	double mu = 1 - 3 * m;
+	if (std::fabs(mu) < 1e-7)
+		mu = 4.0 / 9 * kappa; // m's own last digit would be more than kappa
 	if (std::fabs(mu) < 0.1)
 		mu = (mu * mu * (2 * mu - 6) + 4 * kappa) / (3 * (3 - mu) * (1 - mu));
 	D = (1 + m) * mu;
@@ -160,14 +169,14 @@ Launch::Launch(const Vec3& x, const Vec3& given) {
 	Vec3 d = given;
 	const double d2 = dot(d, d);
 	if (!(d2 > 1e-40 && d2 < 1e40)) // lengths near the ends of the exponent's range
-		d = unit((1 / std::max({std::fabs(d.x), std::fabs(d.y), std::fabs(d.z)})) * d);
+		d = scaled(d);
 	if (measure<double>(x, d, *this)) {
 		outcome = (u < 2.0 / 3 ? outward || kappa > 0 : outward && kappa < 0) ? Outcome::escaped : Outcome::captured;
 		return;
 	}
 	if (!measure<long double>(x, d, *this))
 		measure<Quad>(x, d, *this);
-	outcome = classify(x, d);
+	outcome = classify(x, given);
 	// A ray so near to critical that quadruple precision does not tell takes a side.
 	const bool out = outcome == Outcome::escaped;
 	const bool beyond = u < 2.0 / 3 ? (outward ? kappa > 0 : out) : (outward ? !out : kappa > 0);

@@ -47,8 +47,10 @@ extern const Integrator dopri5;
 inline double conditioning(double b) { return std::fmin(1.0, std::fmax(1e-3, std::fabs(b / critical_b - 1))); }
 
 /// What the tolerance must be divided by inside the horizon, where the energy is what remains of |v|^2 = 1 + b^2 u^3 when
-/// nearly all of it cancels. 1 outside.
-inline double cancellation(double u, double b2) { return u > 1 ? (1 + b2 * u * u * u) / (1 + b2) * (1 + 40 * (1 - 1 / u)) : 1; }
+/// nearly all of it cancels. 1 outside. Beyond 1e8 rounding has taken what steps could save.
+inline double cancellation(double u, double b2) {
+	return u > 1 ? std::fmin(1e8, (1 + b2 * u * u * u) / (1 + b2)) * (1 + 40 * (1 - 1 / u)) : 1;
+}
 
 } // namespace blackhole
 

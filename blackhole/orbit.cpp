@@ -59,28 +59,30 @@ template <typename T> T margin(const Vec3& x, const Vec3& d, T& scale) {
 } // namespace
 
 Outcome classify(const Vec3& x, const Vec3& d) {
-	// Lengths near the ends of the exponent's range would overflow when squared four times.
+	// Lengths near the ends of the exponent's range would overflow when squared four times; quadruple precision's is wide enough.
 	const double m = std::max({std::fabs(d.x), std::fabs(d.y), std::fabs(d.z)});
-	const Vec3 u = (m > 1e30 || m < 1e-30) ? (1 / m) * d : d;
+	const Vec3 u = (m > 1e30 || m < 1e-30) ? scaled(d) : d;
 	double scale;
 	const double quick = margin<double>(x, u, scale);
 	if (std::fabs(quick) > 1e-13 * scale)
 		return quick > 0 ? Outcome::escaped : Outcome::captured;
 	Quad quad_scale;
-	return margin<Quad>(x, u, quad_scale) > 0 ? Outcome::escaped : Outcome::captured;
+	return margin<Quad>(x, d, quad_scale) > 0 ? Outcome::escaped : Outcome::captured;
 }
 
 Orbit::Orbit(const Vec3& x, const Vec3& d) {
-	r = length(x);
+	// In long double, and d as given: b keeps an error of 5e-20 r, where double would leave it 1e-16 r, most of a b far out.
+	using Long = long double;
+	const Long i = Long(x.y) * d.z - Long(x.z) * d.y, j = Long(x.z) * d.x - Long(x.x) * d.z,
+			   l = Long(x.x) * d.y - Long(x.y) * d.x;
+	const Long size = std::sqrt(Long(d.x) * d.x + Long(d.y) * d.y + Long(d.z) * d.z), twist = std::sqrt(i * i + j * j + l * l);
+	const Long distance = std::sqrt(Long(x.x) * x.x + Long(x.y) * x.y + Long(x.z) * x.z);
+	r = double(distance);
 	e1 = (1 / r) * x;
-	const Vec3 n = unit(d);
-	const double radial = dot(n, e1);
-	Vec3 across = n - radial * e1;
-	// Once more, so that e2 is perpendicular to the last digit for nearly radial rays too.
-	across = across - dot(across, e1) * e1;
-	double tangential = length(across);
+	const double radial = double((Long(x.x) * d.x + Long(x.y) * d.y + Long(x.z) * d.z) / (distance * size));
+	double tangential = double(twist / (distance * size));
 	if (tangential > 1e-300) {
-		e2 = (1 / tangential) * across;
+		e2 = unit(cross({double(i / twist), double(j / twist), double(l / twist)}, e1));
 	} else {
 		// A radial ray stays on its line, in whatever plane.
 		const Vec3 other = std::fabs(e1.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
@@ -88,7 +90,10 @@ Orbit::Orbit(const Vec3& x, const Vec3& d) {
 		tangential = 0;
 	}
 	const double hu = r * tangential;
-	const double speed = 1 / std::sqrt(1 - tangential * tangential / r); // = 1 / sqrt(1 - hu^2 / r^3)
+	// The energy's square, 1 - hu^2 / r^3, without cancellation outside the horizon. On it a tangential ray has none: how little
+	// is of no consequence, as the path over phi depends on radial / tangential alone.
+	const double energy2 = radial * radial + tangential * tangential * ((r - 1) / r);
+	const double speed = 1 / std::sqrt(std::max(energy2, 1e-30));
 	p = {r, 0};
 	v = {speed * radial, speed * tangential};
 	h = speed * hu;

@@ -72,8 +72,8 @@ public:
 	/// The relative change of the energy, over the size of its terms, between start and end (the angular momentum cannot
 	/// change in these variables): what the integrator did wrong, no more than a hint of the path's own error.
 	double drift() const;
-	/// Whether the path had to be taken a hair to the side of b_c for the numbers to follow classify(); only
-	/// within 0.1 % of b_c.
+	/// Whether the path had to be taken a hair to the side of b_c for the numbers to follow classify(): only
+	/// within 0.1 % of b_c, and for rays of next to no energy from deep inside the horizon.
 	bool nudged() const { return nudged_; }
 
 private:

@@ -19,8 +19,9 @@ Node step(const Node& n, Plan& plan) {
 	const double k2 = plan.k2, u = n.u;
 	const double rate = plan.rate * cancellation(u, plan.b2);
 	const double frequency = std::sqrt(k2 * (1 + 3 * u));
-	// A radial ray is a straight line in s: no error, but the piece must not leap far beyond the horizon.
-	const double h = 1 / (frequency * (1 / longest + std::sqrt(std::sqrt(rate))) + 1);
+	// A radial ray is a straight line in s: no error, but the piece must not leap far beyond the horizon. Deep inside it may:
+	// halving u is near enough.
+	const double h = 1 / (frequency * (1 / longest + std::sqrt(std::sqrt(rate))) + (u > 2 ? 2 / u : 1));
 
 	const double half = 0.5 * h, v = half * n.w;
 	const double a2 = acceleration(u + v, k2);

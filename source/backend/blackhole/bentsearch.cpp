@@ -209,11 +209,10 @@ bool Bent_Path::Along_Arcs(size_t index, int chords, Intersection& isect, const 
 			bent->walks.push_back(walk);
 			if(!(more = walk.next(arc, chords)))
 				break;
-			VECTOR start, end, apex;
+			VECTOR start, end;
 			hole.To_Scene(arc.from, start);
 			hole.To_Scene(arc.to, end);
-			hole.To_Scene(arc.apex, apex);
-			run.Add(start, end, apex, arc);
+			run.Add(start, end, arc.bulge * hole.Radius, arc);
 		}
 		tree.Find(run, bent->holes.Radii_Of(index), candidates);
 		for(int i = 0; i < run.Count(); i++)
@@ -231,7 +230,7 @@ bool Bent_Path::Along_Arcs(size_t index, int chords, Intersection& isect, const 
 			}
 			blackhole::Chords& one = bent->walks[i];
 			Chord_Run::Chord chord;
-			for(int j = 0; (j < chords) && one.next(c); j++)
+			for(int j = 0; (j < run[i].chords) && one.next(c); j++)
 			{
 				hole.To_Scene(c.from, chord.from);
 				hole.To_Scene(c.to, chord.to);

@@ -69,8 +69,8 @@ void Chord_Run::Bound()
 			b.hi[i] = j < count ? max(chords[j].from[i], chords[j].to[i]) : -HUGE_VAL;
 			if(arcs && (j < count))
 			{
-				b.lo[i] = min(b.lo[i], chords[j].apex[i]);
-				b.hi[i] = max(b.hi[i], chords[j].apex[i]);
+				b.lo[i] -= chords[j].bulge;
+				b.hi[i] += chords[j].bulge;
 			}
 		}
 		Widen(b);
@@ -159,11 +159,11 @@ static DBL Height(const VECTOR p, const Plane *plane)
 	return h + plane->Distance;
 }
 
-// Whether a chord, or an arc, may meet a plane: not if all its corners are well on one side.
+// Whether a chord, or an arc, may meet a plane: not if all of it is well on one side.
 static bool May_Meet(const Chord_Run::Chord& c, bool arc, const Plane *plane, DBL margin)
 {
-	const DBL a = Height(c.from, plane), b = Height(c.to, plane), d = arc ? Height(c.apex, plane) : a;
-	return (min(a, min(b, d)) <= margin) && (max(a, max(b, d)) >= -margin);
+	const DBL a = Height(c.from, plane), b = Height(c.to, plane), near = margin + (arc ? c.bulge : 0.0);
+	return (min(a, b) <= near) && (max(a, b) >= -near);
 }
 
 void Chord_Tree::Choose(const Chord_Run::Chord& chord, const std::vector<std::pair<DBL, DBL> >& radii, const std::vector<unsigned int>& of, std::vector<unsigned int>& out) const

@@ -38,12 +38,12 @@ class Chord_Run
 			arcs = false;
 		}
 		/// A run holds either chords or arcs.
-		void Add(const VECTOR from, const VECTOR to, const VECTOR apex, const blackhole::Arc& arc)
+		void Add(const VECTOR from, const VECTOR to, DBL bulge, const blackhole::Arc& arc)
 		{
 			Chord& c = chords[count++];
 			Assign_Vector(c.from, from);
 			Assign_Vector(c.to, to);
-			Assign_Vector(c.apex, apex);
+			c.bulge = bulge;
 			c.nearest = arc.nearest;
 			c.farthest = arc.farthest;
 			c.length = arc.length;
@@ -53,7 +53,8 @@ class Chord_Run
 
 		struct Chord
 		{
-			VECTOR from, to, apex; ///< apex: of an arc
+			VECTOR from, to;
+			DBL bulge; ///< of an arc, scene units
 			DBL nearest, farthest; ///< to the hole's centre, in Schwarzschild radii
 			blackhole::Mark at_from, at_to;
 			DBL length; ///< of an arc, in Schwarzschild radii

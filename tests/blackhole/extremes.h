@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+/// Rays at the extremes of what the library's headers allow, and what must hold for every ray they allow.
+///
+/// Shared by extremes_test.cpp (a million rays), extremes_long.cpp (as many as there is time for) and fuzz.cpp.
+#ifndef TESTS_EXTREMES_H
+#define TESTS_EXTREMES_H
+
+#include "blackhole/chords.h"
+#include "blackhole/closed.h"
+
+#include <random>
+#include <string>
+
+namespace extremes {
+
+struct Ray {
+	blackhole::Vec3 x, d;
+	blackhole::Settings settings;
+	bool ramp = false;
+	std::string text() const; ///< the doubles to the last bit, as C++ has them
+};
+
+/// The kinds of rays that generate() makes.
+enum Kind {
+	anywhere,
+	radial,
+	at_the_edge,
+	photon_sphere,
+	effect_sphere,
+	horizon,
+	inside,
+	small_sphere,
+	critical,
+	tangential,
+	kinds
+};
+extern const char* const kind_names[kinds];
+/// A ray of that kind; not every one is allowed().
+Ray generate(Kind kind, std::mt19937_64& random);
+
+/// Whether the headers allow the ray: 0 < |x| <= R (to rounding), d not zero, and from the horizon inward d outward with
+/// positive energy. About the doubles as given, in quadruple precision.
+bool allowed(const Ray& ray);
+
+/// The outcome about the doubles as given, in quadruple precision: the barrier's height against
+/// the ray's and the side of the photon sphere, not classify()'s formula. margin: how near it was, as the share of what was
+/// compared.
+blackhole::Outcome witness(const Ray& ray, double& margin);
+
+/// The largest, over all rays, of what a ray can be judged by; for the reader.
+struct Figures {
+	long rays = 0, captured = 0, near = 0, nudged = 0, oracle = 0, back = 0;
+	long nodes = 0, chords = 0;
+	std::size_t most_nodes = 0, most_chords = 0;
+	double drift = 0;     ///< over the tolerance, outside the 0.1 % band; likewise the next three
+	double off = 0;       ///< chord points' distance from the exact curve, over tolerance * r
+	double direction = 0; ///< at the exit, over the tolerance
+	double back_off = 0;  ///< where the path followed back from its exit ends, from the start, over tolerance * R
+	double swept = 0;     ///< radians, of any ray
+	double steps = 0;     ///< over the bound
+	double closest = 1;   ///< smallest margin of witness() but 0
+	void print(const char* name) const;
+};
+
+/// What must hold of every allowed ray. Returns what does not, or an empty string. exact: compares with the closed form,
+/// and follows the path back, too.
+std::string check(const Ray& ray, bool exact, blackhole::Path& path, Figures& figures);
+
+} // namespace extremes
+
+#endif
