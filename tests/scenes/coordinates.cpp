@@ -50,6 +50,11 @@ Seen see(const std::string& scene, double range, int width, int height, const st
 
 std::string text_of(const Vec3& v) { return "<" + number(v.x) + "," + number(v.y) + "," + number(v.z) + ">"; }
 
+Vec3 radial_times(const Vec3& x, const Vec3& v, double s) {
+	const Vec3 e = unit(x);
+	return v + ((s - 1) * dot(v, e)) * e;
+}
+
 Camera::Camera(Vec3 l, Vec3 d, double radians, int w, int h) : location(l), direction(unit(d)), width(w), height(h) {
 	const Vec3 across = unit(cross(std::fabs(direction.y) < 0.9 ? Vec3{0, 1, 0} : Vec3{1, 0, 0}, direction));
 	right = (radians * w) * across;

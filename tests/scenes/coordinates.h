@@ -35,4 +35,7 @@ struct Camera {
 
 std::string text_of(const blackhole::Vec3& v);
 
+/// v with its part along the radius at x multiplied by s: between coordinates and the static frame, written for the tests alone.
+blackhole::Vec3 radial_times(const blackhole::Vec3& x, const blackhole::Vec3& v, double s);
+
 #endif

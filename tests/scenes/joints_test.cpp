@@ -127,10 +127,6 @@ namespace {
 
 constexpr double R = 30;
 double g(double r) { return std::sqrt((1 - 1 / r) / (1 - 1 / R)); }
-Vec3 radial_times(const Vec3& x, const Vec3& v, double s) {
-	const Vec3 e = unit(x);
-	return v + ((s - 1) * dot(v, e)) * e;
-}
 
 // Whether the exact path of a pixel that meets the surface is black once reflected: it meets it again, or ends in the hole;
 // positions from the hole's centre.

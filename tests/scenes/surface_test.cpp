@@ -19,10 +19,6 @@ const char* const painted = " Coordinates(40) finish { emission 1 diffuse 0 ambi
 
 double g(double r) { return std::sqrt((1 - 1 / r) / (1 - 1 / R)); }
 
-Vec3 radial_times(const Vec3& x, const Vec3& v, double s) {
-	const Vec3 e = unit(x);
-	return v + ((s - 1) * dot(v, e)) * e;
-}
 Vec3 camera_direction(const Vec3& x, const Vec3& pixel) { return unit(radial_times(x, pixel, g(length(x)))); }
 
 struct Hits {

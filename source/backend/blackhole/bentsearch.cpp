@@ -5,15 +5,10 @@
 // frame.h must always be the first POV file included (pulls in platform config)
 #include "backend/frame.h"
 #include "backend/math/vector.h"
-#include "backend/bounding/bbox.h"
-#include "backend/interior/interior.h"
 #include "backend/scene/objects.h"
-#include "backend/scene/scene.h"
-#include "backend/scene/threaddata.h"
 #include "backend/blackhole/bentpath.h"
 #include "backend/blackhole/bentsegment.h"
 #include "backend/blackhole/blackholes.h"
-#include "blackhole/closed.h"
 
 // this must be the last file included
 #include "base/povdebug.h"

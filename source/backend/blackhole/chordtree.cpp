@@ -4,7 +4,6 @@
 
 // frame.h must always be the first POV file included (pulls in platform config)
 #include "backend/frame.h"
-#include "backend/math/matrices.h"
 #include "backend/math/vector.h"
 #include "backend/scene/objects.h"
 #include "backend/shape/planes.h"
