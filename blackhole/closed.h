@@ -68,6 +68,8 @@ public:
 
 	bool radial() const { return launch_.radial || launch_.B > 1e36; }
 	Outcome outcome() const { return launch_.outcome; }
+	/// Whether b is b_c to the last digits of a double: at() is of no use then.
+	bool critical() const { return std::fabs(launch_.kappa) < 1e-14; }
 	/// Whether a turning point lies ahead of the start, and the angle swept up to it.
 	bool turns() const { return turns_; }
 	double turning_angle() const { return turning_; }

@@ -24,7 +24,8 @@ Plan start(const Orbit& orbit, double tolerance) {
 Node step(const Node& n, Plan& plan) {
 	const double k2 = plan.k2, u = n.u, w = n.w;
 	const double allowed = share * plan.rate / cancellation(u, plan.b2);
-	const double most = 1 / (std::sqrt(k2 * (1 + 3 * u)) / longest_for(plan.rate) + 1);
+	// The last term as in rk4.cpp.
+	const double most = 1 / (std::sqrt(k2 * (1 + 3 * u)) / longest_for(plan.rate) + (u > 2 ? 2 / u : 1));
 	double h = std::min(plan.next, most);
 	for (int tries = 0;; tries++) {
 		// u and w go through the stages as one system: u' = w, w' = acceleration(u).

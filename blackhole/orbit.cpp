@@ -72,11 +72,18 @@ Outcome classify(const Vec3& x, const Vec3& d) {
 
 Orbit::Orbit(const Vec3& x, const Vec3& d) {
 	// In long double, and d as given: b keeps an error of 5e-20 r, where double would leave it 1e-16 r, most of a b far out.
+	// Where even that is more than 5e-14 of b, in quadruple precision.
 	using Long = long double;
-	const Long i = Long(x.y) * d.z - Long(x.z) * d.y, j = Long(x.z) * d.x - Long(x.x) * d.z,
-			   l = Long(x.x) * d.y - Long(x.y) * d.x;
-	const Long size = std::sqrt(Long(d.x) * d.x + Long(d.y) * d.y + Long(d.z) * d.z), twist = std::sqrt(i * i + j * j + l * l);
+	Long i = Long(x.y) * d.z - Long(x.z) * d.y, j = Long(x.z) * d.x - Long(x.x) * d.z, l = Long(x.x) * d.y - Long(x.y) * d.x;
+	const Long size = std::sqrt(Long(d.x) * d.x + Long(d.y) * d.y + Long(d.z) * d.z);
 	const Long distance = std::sqrt(Long(x.x) * x.x + Long(x.y) * x.y + Long(x.z) * x.z);
+	Long twist = std::sqrt(i * i + j * j + l * l);
+	if (twist < 1e-6L * distance * size) {
+		i = Long(Quad(x.y) * d.z - Quad(x.z) * d.y);
+		j = Long(Quad(x.z) * d.x - Quad(x.x) * d.z);
+		l = Long(Quad(x.x) * d.y - Quad(x.y) * d.x);
+		twist = std::sqrt(i * i + j * j + l * l);
+	}
 	r = double(distance);
 	e1 = (1 / r) * x;
 	const double radial = double((Long(x.x) * d.x + Long(x.y) * d.y + Long(x.z) * d.z) / (distance * size));

@@ -10,6 +10,9 @@ namespace {
 // photon sphere, would wind on until rounding decides, or for ever: it is nudged. So rk4 takes at most 2 + 90 (1/0.55 +
 // rate^(1/4)) + 45 steps outside the horizon, 41,000 at a tolerance of 1e-9 (its step is at least 1 / (2 k (...) + 1)).
 constexpr double most_swept = 45;
+// The closed form is for less: within 1e-7 of b_c rays are stepped, whatever the method. And for b above this: u's own error is
+// 1e-18 / b there, while all that such a ray bends, b^2, is nothing, and its steps are exact.
+constexpr double most_swept_exactly = 18, least_b_exactly = 1e-6;
 constexpr std::size_t most_steps = 200000; // no method should come near it
 
 // Where on the piece u is reached, t in [0, 1]: exactly once, since steps are shorter than the path takes to turn round.
@@ -81,10 +84,14 @@ bool Path::trace(const Settings& settings) {
 }
 
 // The closed form says where the path ends; nodes on the way are laid as densely as the quintic between them is used for,
-// which is to place chords, not their ends.
+// which is to place chords, not their ends. It is not for rays that wind on: what a last digit is worth grows as exp(phi).
 bool Path::trace_exactly(const Settings& settings) {
 	constexpr double apart = 0.25; // in the equation's own time
 	const double k = orbit_.k, last = exact_->end(settings.effect_radius) / k;
+	if (!(k * last <= most_swept_exactly) || (last == 0 && outcome_ == Outcome::captured && !inside_)) {
+		exact_.reset();
+		return false;
+	}
 	const auto node = [&](double s) {
 		const Exact_Orbit::State at = exact_->at(k * s);
 		return Node{s, at.u, k * at.du, acceleration(at.u, k * k)};
@@ -92,7 +99,7 @@ bool Path::trace_exactly(const Settings& settings) {
 	nodes_.clear();
 	nodes_.push_back({0, orbit_.u, orbit_.w, acceleration(orbit_.u, k * k)});
 	const bool comes_out = inside_ && last > 0;
-	emerged_ = comes_out ? exact_->swept(1, false) / k : 0;
+	emerged_ = comes_out ? std::max(exact_->swept(1, false) / k, 1e-300) : 0;
 	while (nodes_.size() < most_steps) {
 		const Node& n = nodes_.back();
 		const double s = n.s + 1 / (k * std::sqrt(1 + 3 * n.u) / apart + 1);
@@ -100,10 +107,10 @@ bool Path::trace_exactly(const Settings& settings) {
 			break;
 		nodes_.push_back(node(s));
 	}
-	Node end = node(std::max(last, 0.0));
-	if (nodes_.size() == 1 && !(last > 0))
-		end.s = 1e-300; // never outside: a path of no length
-	else
+	Node end = last > 0 ? node(last) : nodes_.front();
+	if (!(last > 0))
+		end.s = 1e-300; // a path of no length: it starts where it ends, or never leaves the horizon
+	if (outcome_ == Outcome::escaped || last > 0)
 		end.u = outcome_ == Outcome::escaped ? 1 / settings.effect_radius : 1;
 	nodes_.push_back(end);
 	return true;
@@ -117,11 +124,11 @@ bool Path::solve(const Vec3& x, const Vec3& d, const Settings& settings) {
 	if (settings.method == Method::exact) {
 		exact_.emplace(x, d);
 		outcome_ = exact_->outcome();
-		if (!exact_->radial())
-			return trace_exactly(settings);
+		if (orbit_.h > least_b_exactly && !exact_->critical() && trace_exactly(settings))
+			return true;
 		exact_.reset();
-	}
-	outcome_ = classify(x, d);
+	} else
+		outcome_ = classify(x, d);
 	if (trace(settings))
 		return true;
 	// So close to b_c that the integrator's own error decides: the double's neighbour on the right side is

@@ -49,7 +49,9 @@ public:
 		if (!exact_)
 			return piece.at(mark.t);
 		const Node &from = nodes_[mark.piece], &to = nodes_[mark.piece + 1];
-		return exact_->at(orbit_.k * (from.s + mark.t * (to.s - from.s))).u;
+		// Far out its last digits may be all of u: never less than at the ends, or where rays turn inside the photon sphere.
+		return std::fmax(exact_->at(orbit_.k * (from.s + mark.t * (to.s - from.s))).u,
+			std::fmin(2.0 / 3, std::fmin(nodes_.front().u, nodes_.back().u)));
 	}
 
 	/// Where the path ends and the unit tangent there.

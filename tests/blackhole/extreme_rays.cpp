@@ -110,7 +110,9 @@ Ray generate(Kind kind, Random& random) {
 	R = std::max(R, ulps(1.5, 1));
 
 	Ray ray;
-	ray.settings = {R, any_tolerance(random, kind == at_the_edge || kind == critical || kind == photon_sphere), Method::rk4};
+	const Method methods[] = {Method::rk4, Method::rk4, Method::dopri5, Method::exact};
+	ray.settings = {
+		R, any_tolerance(random, kind == at_the_edge || kind == critical || kind == photon_sphere), methods[pick(random, 4)]};
 	ray.ramp = pick(random, 4) == 0;
 	if (pick(random, 2)) { // on an axis, to the last bit
 		ray.x = {r, 0, 0};

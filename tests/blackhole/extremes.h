@@ -8,6 +8,7 @@
 #include "blackhole/chords.h"
 #include "blackhole/closed.h"
 
+#include <istream>
 #include <random>
 #include <string>
 
@@ -35,6 +36,9 @@ enum Kind {
 	kinds
 };
 extern const char* const kind_names[kinds];
+/// printf's.
+std::string words(const char* format, ...);
+
 /// A ray of that kind; not every one is allowed().
 Ray generate(Kind kind, std::mt19937_64& random);
 
@@ -50,15 +54,20 @@ blackhole::Outcome witness(const Ray& ray, double& margin);
 /// The largest, over all rays, of what a ray can be judged by; for the reader.
 struct Figures {
 	long rays = 0, captured = 0, near = 0, nudged = 0, oracle = 0, back = 0;
+	long turned = 0; ///< five turns or more
 	long nodes = 0, chords = 0;
-	std::size_t most_nodes = 0, most_chords = 0;
+	long most_nodes = 0, most_chords = 0;
 	double drift = 0;     ///< over the tolerance, outside the 0.1 % band; likewise the next three
 	double off = 0;       ///< chord points' distance from the exact curve, over tolerance * r
 	double direction = 0; ///< at the exit, over the tolerance
-	double back_off = 0;  ///< where the path followed back from its exit ends, from the start, over tolerance * R
+	double back_off = 0;  ///< where the path followed back from its exit passes the start, over tolerance * r
 	double swept = 0;     ///< radians, of any ray
-	double steps = 0;     ///< over the bound
+	double steps = 0;     ///< over the bound, of paths of more than ten nodes
 	double closest = 1;   ///< smallest margin of witness() but 0
+	void add(const Figures& other);
+	/// As numbers in a line, and back.
+	std::string line() const;
+	bool read(std::istream& in);
 	void print(const char* name) const;
 };
 

@@ -1,45 +1,188 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-/// As extremes_test.cpp, with a hundred million rays, or as many as the time allows; prints the figures for the documentation.
-/// BLACKHOLE_RAYS: how many in all; BLACKHOLE_SECONDS: how long at most (1200); BLACKHOLE_SEED: which.
+/// As extremes_test.cpp, with a hundred million rays in slices of a hundred thousand. Each finished slice is a few lines in a
+/// file, and what is there is not done again: a run can be stopped and taken up. docs/stability.md has the figures.
 #include "extremes.h"
 
+#include <unistd.h>
+
+#include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <mutex>
+#include <set>
+#include <sstream>
+#include <thread>
 
 using namespace extremes;
 
 namespace {
 
-double setting(const char* name, double otherwise) {
-	const char* text = std::getenv(name);
-	return text ? std::atof(text) : otherwise;
+constexpr long slice_rays = 100000;
+
+const char* const help = R"(usage: extremes_long [--rays N] [--seconds S] [--threads T] [--state FILE]
+Checks N rays (100000000) at the extremes, for S seconds at most (no limit), with T threads (1). Finished slices are kept in FILE
+(extremes.state) and not done again. Prints the figures of all that is in FILE; exit code 1 if a ray failed, 2 for bad usage.
+)";
+
+struct Slice {
+	Figures figures[kinds];
+	std::vector<std::string> failures;
+};
+
+// rays: so many of all kinds together. The number says which.
+Slice run(long number, long rays) {
+	Slice slice;
+	blackhole::Path path;
+	for (int kind = 0; kind < kinds; kind++) {
+		std::mt19937_64 random(std::uint64_t(1000 * number + kind + 1));
+		for (long i = 0; slice.figures[kind].rays < rays / kinds && i < 100 * rays; i++) {
+			const Ray ray = generate(Kind(kind), random);
+			if (!allowed(ray))
+				continue;
+			const std::string what = check(ray, i % 16 == 0, path, slice.figures[kind]);
+			if (!what.empty() && slice.failures.size() < 20)
+				slice.failures.push_back(std::string(kind_names[kind]) + ": " + what + ": " + ray.text());
+		}
+	}
+	return slice;
+}
+
+// What an engine is known by: what it makes of some rays. A file of another one must not be taken up.
+std::string engine() {
+	const Slice slice = run(-1, 2000);
+	Figures all;
+	for (const Figures& f : slice.figures)
+		all.add(f);
+	return "engine " + all.line();
+}
+
+double number(const char* name, const char* text) {
+	char* end;
+	const double value = text ? std::strtod(text, &end) : 0;
+	if (!text || end == text || *end || !(value > 0)) {
+		std::fprintf(stderr, "extremes_long: %s %s: must be a number above 0\n", name, text ? text : "");
+		std::exit(2);
+	}
+	return value;
 }
 
 } // namespace
 
-int main() {
-	const double most = setting("BLACKHOLE_RAYS", 1e8), seconds = setting("BLACKHOLE_SECONDS", 1200);
+int main(int argc, char** argv) {
+	double rays = 1e8, seconds = 1e30;
+	int threads = 1;
+	std::string file = "extremes.state";
+	for (int i = 1; i < argc; i += 2) {
+		const std::string name = argv[i];
+		const char* value = i + 1 < argc ? argv[i + 1] : nullptr;
+		if (name == "--rays")
+			rays = number("--rays", value);
+		else if (name == "--seconds")
+			seconds = number("--seconds", value);
+		else if (name == "--threads")
+			threads = int(number("--threads", value));
+		else if (name == "--state" && value)
+			file = value;
+		else {
+			const bool asked = name == "--help";
+			std::fputs(help, asked ? stdout : stderr);
+			return asked ? 0 : 2;
+		}
+	}
+
+	const long slices = long(std::ceil(rays / slice_rays));
+	const std::string mark = engine();
+	std::set<long> done;
+	Figures figures[kinds];
+	long failures = 0;
+	{
+		std::ifstream in(file);
+		std::string line;
+		if (std::getline(in, line) && line != mark) {
+			std::fprintf(stderr, "extremes_long: %s is of another engine; remove it to begin anew\n", file.c_str());
+			return 2;
+		}
+		std::vector<Figures> part;
+		while (std::getline(in, line)) { // a slice counts when its last line is there
+			std::istringstream words(line);
+			std::string word;
+			long slice;
+			Figures f;
+			if (!(words >> word))
+				continue;
+			if (word == "FAILED") {
+				std::printf("%s\n", line.c_str());
+				failures++;
+			} else if (word == "kind" && f.read(words))
+				part.push_back(f);
+			else if (word == "slice" && words >> slice && part.size() == kinds) {
+				if (done.insert(slice).second)
+					for (int k = 0; k < kinds; k++)
+						figures[k].add(part[std::size_t(k)]);
+				part.clear();
+			} else
+				part.clear();
+		}
+	}
+	std::ofstream out(file, std::ios::app);
+	if (out.tellp() == 0)
+		out << mark << "\n";
+	if (!out.flush()) {
+		std::fprintf(stderr, "extremes_long: %s: cannot write there\n", file.c_str());
+		return 2;
+	}
+
 	const auto start = std::chrono::steady_clock::now();
 	const auto passed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
-	std::mt19937_64 random(std::uint64_t(setting("BLACKHOLE_SEED", 1)));
-	blackhole::Path path;
-	Figures figures[kinds];
-	long rays = 0, failures = 0;
-	// A thousand of each kind in turn, so that all get their share of the time.
-	while (double(rays) < most && passed() < seconds && failures < 100)
-		for (int kind = 0; kind < kinds; kind++)
-			for (int i = 0; i < 1000; i++) {
-				const Ray ray = generate(Kind(kind), random);
-				if (!allowed(ray))
+	std::atomic<long> next{0};
+	long made = 0;
+	std::mutex mutex;
+	const auto work = [&] {
+		for (long i; passed() < seconds && (i = next++) < slices;) {
+			{
+				std::lock_guard<std::mutex> lock(mutex);
+				if (done.count(i))
 					continue;
-				rays++;
-				const std::string what = check(ray, i % 16 == 0, path, figures[kind]);
-				if (!what.empty() && ++failures <= 100)
-					std::printf("FAILED %s: %s: %s\n", kind_names[kind], what.c_str(), ray.text().c_str());
 			}
-	for (int kind = 0; kind < kinds; kind++)
+			const Slice slice = run(i, slice_rays);
+			std::lock_guard<std::mutex> lock(mutex);
+			for (const std::string& f : slice.failures) {
+				out << "FAILED " << f << "\n";
+				std::printf("FAILED %s\n", f.c_str());
+			}
+			for (int k = 0; k < kinds; k++) {
+				out << "kind " << slice.figures[k].line() << "\n";
+				figures[k].add(slice.figures[k]);
+			}
+			out << "slice " << i << std::endl;
+			failures += long(slice.failures.size());
+			done.insert(i);
+			made++;
+			if (isatty(2)) {
+				const double left = passed() / double(made) * double(slices - long(done.size()));
+				std::fprintf(stderr, "\r%zu of %ld slices, %.0f min left  ", done.size(), slices, left / 60);
+			}
+		}
+	};
+	std::vector<std::thread> crew;
+	for (int t = 1; t < threads; t++)
+		crew.emplace_back(work);
+	work();
+	for (std::thread& t : crew)
+		t.join();
+	if (isatty(2))
+		std::fputc('\n', stderr);
+
+	Figures all;
+	for (int kind = 0; kind < kinds; kind++) {
 		figures[kind].print(kind_names[kind]);
-	std::printf("[ extremes ] %ld rays in %.0f s, %ld failures\n", rays, passed(), failures);
-	return failures == 0 && rays > 0 ? 0 : 1;
+		all.add(figures[kind]);
+	}
+	all.print("all");
+	std::printf("[ extremes ] %zu of %ld slices done (%ld in this run, %.0f s), %ld rays, %ld failures\n", done.size(), slices,
+		made, passed(), all.rays, failures);
+	return failures == 0 && all.rays > 0 ? 0 : 1;
 }

@@ -59,7 +59,7 @@ Outcome fifty_digits(const Ray& ray, double& margin) {
 TEST(Extremes_Outcome, IsThatOfFiftyDigits) {
 	std::mt19937_64 random(5);
 	double closest = 1;
-	for (int i = 0, seen = 0; seen < 10000; i++) {
+	for (int i = 0, seen = 0; seen < 100000; i++) {
 		const Kind some[] = {at_the_edge, critical, extremes::photon_sphere, inside};
 		const Ray ray = generate(some[i % 4], random);
 		if (!allowed(ray))
@@ -74,7 +74,7 @@ TEST(Extremes_Outcome, IsThatOfFiftyDigits) {
 		ASSERT_EQ(witness(ray, other), exact) << ray.text();
 		ASSERT_EQ(Launch(ray.x, ray.d).outcome, exact) << ray.text();
 	}
-	std::printf("[ extremes ] 10000 outcomes as in fifty digits, the closest %.1e from b_c^2\n", closest);
+	std::printf("[ extremes ] 100000 outcomes as in fifty digits, the closest %.1e from b_c^2\n", closest);
 	EXPECT_LT(closest, 1e-30); // on the photon sphere it is the square of a rounding
 }
 
@@ -115,8 +115,16 @@ TEST(Extremes_Found, StaysMended) {
 			{929265146191.65271, 0.1, Method::rk4}},                // and its end was far off
 		{{1e12, 0, 0}, {-1, 5.83e-4, 0}, {1e12, 0.1, Method::rk4}}, // likewise
 		{{983627998785.0105, 0, 0}, {-0x1.fff18982a4065p-1, 0x1.e6c571c22dff8p-7, 0},
-			{983627998785.0105, 1e-4, Method::rk4}},           // and
-		{{1e-6 + 1e-7, 0, 0}, {1, 0, 0}, {R, t, Method::rk4}}, // a million steps
+			{983627998785.0105, 1e-4, Method::rk4}},                                      // and
+		{{1e-6 + 1e-7, 0, 0}, {1, 0, 0}, {R, t, Method::rk4}},                            // a million steps
+		{{2.64e-06, 0, 0}, {1, 1.9e-17, 0}, {1.5000001, 0.1, Method::dopri5}},            // likewise
+		{{1e12, 0, 0}, {-1, 3e-12, 0}, {1e12, 1e-9, Method::rk4}},                        // b off by 2e-8, a thousand tolerances
+		{{1.5 + 3 * ulp, 0, 0}, {-1e-17, 1, 0}, {R, t, Method::exact}},                   // u below 0
+		{{1.5, 0, 0}, {4.9e-324, 1, 0}, {1.5 + ulp, 0.1, Method::exact}},                 // likewise
+		{{1.5, 0, 0}, {0, 1, 0}, {R, t, Method::exact}},                                  // never got to the horizon
+		{{198.028401188507, 0, 0}, {0.99, 0.1, 0}, {198.028401188507, t, Method::exact}}, // did not end on the sphere
+		{{1 + ulp, 0, 0}, {1, 1e-17, 0}, {1e6, 3e-6, Method::exact}},                     // u below 0
+		{{1.000000399, 0, 0}, {-1, 2.7e-17, 1e-9}, {1.5 + ulp, 1e-4, Method::exact}},     // energy lost
 	};
 	Path path;
 	Figures figures;

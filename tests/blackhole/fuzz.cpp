@@ -71,7 +71,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 	const double R = bytes.number(), r = length(ray.x);
 	// Narrow tolerances take a thousand times as long and other numbers, no other lines.
 	const double tolerance = std::pow(10, -1 - (how & 4 ? 3.0 : 1.0) * bytes.byte() / 255.0);
-	ray.settings = {R > 1.5 && R >= r ? R : std::max(r, 1.5000001), tolerance, Method::rk4};
+	ray.settings = {R > 1.5 && R >= r ? R : std::max(r, 1.5000001), tolerance, Method((how >> 5) % 3)};
 	ray.ramp = how & 8;
 	if (!extremes::allowed(ray) || r > 1e12)
 		return 0;

@@ -14,7 +14,7 @@ if ! command -v clang++ >/dev/null || ! echo 'extern "C" int LLVMFuzzerTestOneIn
 	echo "fuzz: skipped: no clang++ with libFuzzer here (Debian: clang and libclang-rt-dev)"
 	exit 77
 fi
-sources=(blackhole/*.cpp tests/blackhole/{extremes,extreme_rays,fuzz}.cpp)
+sources=(blackhole/*.cpp tests/blackhole/{extremes,extreme_checks,extreme_rays,fuzz}.cpp)
 if [ ! -x "$fuzz" ] || [ -n "$(find blackhole tests/blackhole -newer "$fuzz" -name '*.[ch]*')" ]; then
 	clang++ -std=gnu++17 -O1 -g1 -ffp-contract=off -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all \
 		-I. -Itests/blackhole "${sources[@]}" -o "$fuzz.$$"
@@ -23,5 +23,5 @@ fi
 corpus=()
 [ "$seconds" -le 15 ] || corpus=("$build/fuzz/corpus")
 # A ray takes a millisecond at most, a hundred with the sanitizers: one that takes 20 s does not end.
-exec "$fuzz" -max_total_time="$seconds" -max_len=80 -timeout=20 -print_final_stats=1 -verbosity=0 \
+exec "$fuzz" -max_total_time="$seconds" -max_len=80 -timeout=20 -error_exitcode=1 -print_final_stats=1 -verbosity=0 \
 	-artifact_prefix="$build/fuzz/failed/" "$@" "${corpus[@]}"
