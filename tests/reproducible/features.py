@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: AGPL-3.0-or-later
-"""The scenes of pieces.py: for each of POV-Ray's features that draws random numbers or remembers something, one that shows it."""
+"""For each of POV-Ray's features that draws random numbers, or remembers something from pixel to pixel, a scene that shows it."""
 
-HOLE = "blackhole { 0, 1 tolerance 1e-3 }\n"
+HOLE = "blackhole { 0, 1 tolerance 1e-2 }\n"
 CAMERA = "camera { location <0, 2, -14> look_at <0, 0.5, 0> angle 42 %s }\n"
 SUN = "light_source { <10, 20, -20>, 0.8 }\n"
 SKY = "sky_sphere { pigment { bozo scale 0.2 color_map { [0 rgb <0.02, 0.2, 0.6>] [1 rgb <0.9, 0.8, 0.5>] } } }\n"
@@ -14,10 +14,10 @@ box { <-1, 2, 3>, <1, 4, 5> pigment { granite scale 2 } }
 PLAIN = SUN + SKY + GROUND % "" + BALLS
 
 AREA = "light_source { <10, 20, -20>, 0.8 area_light 8*x, 8*y, 4, 4 jitter %s }\n"
-FOG = "box { <-7, -2, -4>, <7, 5, 6> hollow pigment { rgbt 1 } interior { media { %s scattering { 1, 0.05 extinction 0.6 } density { bozo scale 0.7 } } } }\n"
+FOG = "box { <-4, -2, -4>, <-1.5, 1, 2> hollow pigment { rgbt 1 } interior { media { %s scattering { 1, 0.05 extinction 0.6 } density { bozo scale 0.7 } } } }\n"
 MEDIA = SUN + GROUND % "" + "sphere { <-3, 0, 0>, 1.2 pigment { rgb 1 } }\n" + FOG
 RADIOSITY = "global_settings { radiosity { pretrace_start 0.08 pretrace_end 0.04 count 40 nearest_count 4 error_bound 0.7 recursion_limit 2 low_error_factor 0.8 %s } }\n"
-LIT = "sphere { <4, 6, 2>, 1.5 pigment { rgb <1, 0.7, 0.3> } finish { emission 3 diffuse 0 } }\n" + "default { finish { ambient 0 } }\n" + GROUND % "" + BALLS
+LIT = "background { rgb <0.3, 0.4, 0.6> } sphere { <4, 6, 2>, 1.5 pigment { rgb <1, 0.7, 0.3> } finish { emission 3 diffuse 0 } }\n" + "default { finish { ambient 0 } }\n" + GROUND % "" + BALLS
 
 # Name: (what stands in the camera, the rest of the scene, options, whether stock's strips are known to differ).
 FEATURES = {
@@ -35,9 +35,9 @@ FEATURES = {
 		"sphere { <-3, 0, 0>, 1.5 pigment { rgb 0.9 } finish { subsurface { translucency <0.4, 0.3, 0.2> } } interior { ior 1.4 } }\n" +
 		"box { <1.5, -2, -1>, <4, 1, 2> pigment { rgb 0.9 } finish { subsurface { translucency <0.2, 0.3, 0.5> } } interior { ior 1.3 } }\n", "-A", True),
 	"rainbow": ("", PLAIN + "rainbow { angle 25 width 15 distance 1e3 direction <0, 0.1, 1> jitter 0.3 color_map { [0 rgbt <1, 0.5, 0.5, 1>] [0.3 rgbt <1, 0.2, 0.2, 0.2>] [0.7 rgbt <0.2, 0.2, 1, 0.2>] [1 rgbt <0.5, 0.5, 1, 1>] } }\n", "-A", True),
-	"photons": ("", "global_settings { photons { count 4000 media 20 jitter 0.5 } }\n" + SUN + GROUND % "" +
+	"photons": ("", "global_settings { photons { count 20000 media 20 jitter 0.5 } }\n" + SUN + GROUND % "" +
 		"sphere { <3, 0, 2>, 1.3 pigment { rgbf 0.95 } interior { ior 1.4 } photons { target reflection on refraction on } }\n" +
-		"box { <-7, -2, -4>, <7, 4, 6> hollow pigment { rgbt 1 } interior { media { method 3 samples 3 scattering { 1, 0.02 } } } }\n", "-A", False),
+		"box { <1.5, -2, -4>, <7, 1, 3> hollow pigment { rgbt 1 } interior { media { method 3 samples 3 scattering { 1, 0.02 } } } }\n", "-A", False),
 	"radiosity": ("", RADIOSITY % "" + LIT, "-A", True),
-	"radiosity-always": ("", RADIOSITY % "always_sample on normal on media on" + AREA % "" + LIT + FOG % "method 1 samples 1, 2 intervals 1", "+A0.2 +AM1 +R2", True),
+	"radiosity-always": ("", RADIOSITY % "count 12 always_sample on normal on media on" + AREA % "" + LIT + FOG % "method 1 samples 1, 1 intervals 1", "+A0.3 +AM1 +R1", True),
 }

@@ -118,8 +118,9 @@ void Reproducible::Prepare_Radiosity(ViewData& view, POVMS_Object& options, cons
 	settings.alwaysSample = false;
 	if(load && Load(view.radiosityCache, file))
 	{
-		// So small a start leaves no step to take.
-		settings.pretraceStart = 1e-9 * settings.pretraceEnd;
+		// StartRender's count of steps from one to the other comes to none; less would be taken for very many.
+		settings.pretraceStart = 0.35;
+		settings.pretraceEnd = 1.0;
 		return;
 	}
 	if(save)
