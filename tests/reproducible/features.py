@@ -19,7 +19,7 @@ MEDIA = SUN + GROUND % "" + "sphere { <-3, 0, 0>, 1.2 pigment { rgb 1 } }\n" + F
 RADIOSITY = "global_settings { radiosity { pretrace_start 0.08 pretrace_end 0.04 count 40 nearest_count 4 error_bound 0.7 recursion_limit 2 low_error_factor 0.8 %s } }\n"
 LIT = "background { rgb <0.3, 0.4, 0.6> } sphere { <4, 6, 2>, 1.5 pigment { rgb <1, 0.7, 0.3> } finish { emission 3 diffuse 0 } }\n" + "default { finish { ambient 0 } }\n" + GROUND % "" + BALLS
 
-# Name: (what stands in the camera, the rest of the scene, options, whether stock's strips are known to differ).
+# Name: (what stands in the camera, the rest of the scene, options, whether strips are known to differ without Reproducible=on, or only "threads").
 FEATURES = {
 	"plain": ("", PLAIN, "-A", False),
 	"am1": ("", PLAIN, "+A0.1 +AM1 +R2 +J", True), # by where the cuts are
@@ -35,9 +35,10 @@ FEATURES = {
 		"sphere { <-3, 0, 0>, 1.5 pigment { rgb 0.9 } finish { subsurface { translucency <0.4, 0.3, 0.2> } } interior { ior 1.4 } }\n" +
 		"box { <1.5, -2, -1>, <4, 1, 2> pigment { rgb 0.9 } finish { subsurface { translucency <0.2, 0.3, 0.5> } } interior { ior 1.3 } }\n", "-A", True),
 	"rainbow": ("", PLAIN + "rainbow { angle 25 width 15 distance 1e3 direction <0, 0.1, 1> jitter 0.3 color_map { [0 rgbt <1, 0.5, 0.5, 1>] [0.3 rgbt <1, 0.2, 0.2, 0.2>] [0.7 rgbt <0.2, 0.2, 1, 0.2>] [1 rgbt <0.5, 0.5, 1, 1>] } }\n", "-A", True),
-	"photons": ("", "global_settings { photons { count 20000 media 20 jitter 0.5 } }\n" + SUN + GROUND % "" +
+	"photons": ("", "global_settings { photons { count 20000 media 20 jitter 0.5 } }\n" + SUN + "light_source { <-9, 9, -9>, 0.4 }\n" + GROUND % "" +
+		"torus { 0.8, 0.2 translate <-3, -1, 0> pigment { rgb 0.2 } finish { reflection 0.8 } photons { target reflection on } }\n" +
 		"sphere { <3, 0, 2>, 1.3 pigment { rgbf 0.95 } interior { ior 1.4 } photons { target reflection on refraction on } }\n" +
-		"box { <1.5, -2, -4>, <7, 1, 3> hollow pigment { rgbt 1 } interior { media { method 3 samples 3 scattering { 1, 0.02 } } } }\n", "-A", False),
+		"box { <1.5, -2, -4>, <7, 1, 3> hollow pigment { rgbt 1 } interior { media { method 3 samples 3 scattering { 1, 0.02 } } } }\n", "-A", "threads"),
 	"radiosity": ("", RADIOSITY % "" + LIT, "-A", True),
 	"radiosity-always": ("", RADIOSITY % "count 12 always_sample on normal on media on" + AREA % "" + LIT + FOG % "method 1 samples 1, 1 intervals 1", "+A0.3 +AM1 +R1", True),
 }

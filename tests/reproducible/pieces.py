@@ -69,8 +69,14 @@ def main():
 	for holes, cuts, threads in ((HOLE, list(CUTS), (1, 2, 4)), ("", ["7"], (1, 2))):
 		wrong = different(program, scene + holes, options, cuts, threads)
 		expect(not wrong, name, "with a hole:" if holes else "without:", len(wrong), "rows differ:", *wrong[:5])
-	stock = different(program, scene + HOLE, options, ["3"], (1,), on=False)
-	print(f"{name}: without Reproducible=on, {len(stock)} of {HEIGHT} rows differ in three strips")
+	if differs == "threads": # how they share the work is chance: seldom the same thread does it all
+		stock = next(filter(None, (different(program, scene + HOLE, options, [], (1, 2, 4), on=False) for _ in range(5))), [])
+	else:
+		stock = different(program, scene + HOLE, options, ["3"], (1,), on=False)
+	if name in ("plain", "am1", "am2", "blur"): # nothing is left to chance
+		on, off = render(program, [(scene, words(options, 1, on=on)) for on in (True, False)])
+		expect(on.same(off), name, "is another picture with Reproducible=on")
+	print(f"{name}: without Reproducible=on, {len(stock)} rows differ")
 	expect(stock or not differs, name, "is the same without Reproducible=on: this scene shows nothing")
 	return povray.failures
 

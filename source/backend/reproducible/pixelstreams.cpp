@@ -42,13 +42,7 @@ static void Seed_Each(std::vector<shared_ptr<SequentialNumberGenerator<Type> > >
 			g->Seed(Mixed(seed + i));
 }
 
-void Reproducible::Begin_Pixel(Trace& trace, DBL x, DBL y, bool moves, bool& interiors)
-{
-	if(const Reproducible *r = trace.sceneData->reproducible.get())
-		r->Begin_Scene_Pixel(trace, x, y, moves, interiors);
-}
-
-void Reproducible::Begin_Scene_Pixel(Trace& trace, DBL x, DBL y, bool moves, bool& interiors) const
+void Reproducible::Begin(Trace& trace, DBL x, DBL y, bool moves, bool& interiors) const
 {
 	RadiosityFunction *radiosity = dynamic_cast<RadiosityFunction *>(&trace.radiosity);
 	// The pretrace is one thread's, all of it: its samples are the better for going on.

@@ -35,7 +35,11 @@ class Reproducible
 		static int Before_Trace(ViewData& view, TaskQueue& tasks, int tracing_threads);
 		/// A camera ray starts at x, y (pixels, with the fractions of antialiasing).
 		///   interiors  to be set when the objects around the camera must be found again, as it `moves`
-		static void Begin_Pixel(Trace& trace, DBL x, DBL y, bool moves, bool& interiors);
+		static void Begin_Pixel(const Reproducible *r, Trace& trace, DBL x, DBL y, bool moves, bool& interiors)
+		{
+			if(r != NULL)
+				r->Begin(trace, x, y, moves, interiors);
+		}
 		/// Whether radiosity samples taken in this pass (OT_PASS_...) are kept for other pixels.
 		static bool Keeps_Samples(const Trace& trace, unsigned int pass);
 		/// Takes from a block's pixels (five numbers each) and its message what is outside of the strip.
@@ -52,7 +56,7 @@ class Reproducible
 		void Set_Area(ViewData& view, const POVRect& area, const std::set<unsigned int>& skip, unsigned int next) const;
 		void Enter_Strip(ViewData *view, TaskQueue&) const;
 		void Prepare_Radiosity(ViewData& view, POVMS_Object& options, const POVRect& frame);
-		void Begin_Scene_Pixel(Trace& trace, DBL x, DBL y, bool moves, bool& interiors) const;
+		void Begin(Trace& trace, DBL x, DBL y, bool moves, bool& interiors) const;
 		static void Seed(Trace& trace, Trace::MediaFunctor& media, POV_ULONG seed);
 		static bool Load(RadiosityCache& cache, const std::string& file);
 		static bool Save(const RadiosityCache& cache, const std::string& file);
