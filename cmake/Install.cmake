@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: AGPL-3.0-or-later
 # `cmake --install build/release` puts povray, POV-Ray's includes and our scenes where POV-Ray looks for them;
 # the target `uninstall` takes away what was put there. The user's povray.ini and povray.conf are left alone.
-install(TARGETS povray RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(TARGETS povray bhfarm bhfarm-server bhfarm-worker RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(TARGETS bhfarm-reads LIBRARY DESTINATION lib/bhfarm)
 install(DIRECTORY ${POVRAY_TREE}/distribution/include ${POVRAY_TREE}/distribution/ini
 	DESTINATION ${CMAKE_INSTALL_DATADIR}/povray-3.7)
 install(DIRECTORY scenes/ DESTINATION ${CMAKE_INSTALL_DATADIR}/povray-3.7/scenes/blackhole

@@ -31,6 +31,11 @@ need(JPEG libjpeg-dev)
 need(TIFF libtiff-dev)
 need(ZLIB zlib1g-dev)
 need(SDL libsdl1.2-dev)
+# The farm's.
+need(CURL libcurl4-openssl-dev)
+need(OpenSSL libssl-dev)
+need(SQLite3 libsqlite3-dev)
+need(nlohmann_json nlohmann-json3-dev QUIET)
 # OpenEXR's own CMake file fails where its Python module is not installed.
 find_path(OPENEXR_INCLUDE OpenEXRConfig.h PATH_SUFFIXES OpenEXR)
 find_path(IMATH_INCLUDE ImathConfig.h PATH_SUFFIXES Imath)

@@ -9,7 +9,7 @@ files=$root/build/upstream/download
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir "$work/repo"
-cp -r "$root"/{tools,source,vfe,unix,cmake,blackhole,tests,CMakeLists.txt,LICENSE,README.md} "$work/repo"
+cp -r "$root"/{tools,source,vfe,unix,cmake,blackhole,distribute,tests,CMakeLists.txt,LICENSE,README.md} "$work/repo"
 cd "$work/repo"
 bad=0
 fail() { echo "FAILED: $*"; bad=1; }

@@ -7,7 +7,7 @@ cd "$(dirname "$0")/../.."
 files() { find "$@" -name '*.cpp' -o -name '*.h' | sort; }
 die() { echo "style: $*" >&2; exit 1; }
 case $1 in
-format) files blackhole tests | xargs clang-format --dry-run -Werror ;;
+format) files blackhole distribute tests | xargs clang-format --dry-run -Werror ;;
 tidy) clang-tidy --quiet -p "$2" --extra-arg=-std=gnu++17 blackhole/*.cpp 2>/dev/null ;;
 licence) # pictures cannot carry a line; the licence is its own
 	bad=$(find . \( -name build -o -name .git \) -prune -o -type f ! -name LICENSE ! -name '*.jpg' ! -name '*.png' ! -name '*.json' ! -name '.gitignore' -print |
@@ -15,6 +15,7 @@ licence) # pictures cannot carry a line; the licence is its own
 	[ -z "$bad" ] || die "no SPDX line in" $bad ;;
 layers) # physics knows nothing of POV-Ray; what we add to POV-Ray nothing of the farm
 	! grep -rnE '#include *[<"](backend|base|frontend|vfe|pov)' blackhole || die "blackhole/ includes POV-Ray"
-	! grep -rnE '#include *[<"]distribute' source blackhole || die "the ray tracer includes the farm" ;;
+	! grep -rnE '#include *[<"]distribute' source blackhole || die "the ray tracer includes the farm"
+	! grep -rnE '#include *[<"](blackhole/|backend|base|frontend|vfe|pov)' distribute || die "the farm includes the ray tracer" ;;
 *) die "what is '$1'?" ;;
 esac

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The commands that talk to a server elsewhere.
+#include "distribute/client/commands.h"
+
+#include "distribute/client/show.h"
+#include "distribute/client/submit.h"
+#include "distribute/common/error.h"
+#include "distribute/common/files.h"
+#include "distribute/common/hash.h"
+
+#include <cstdio>
+#include <ctime>
+
+namespace farm {
+
+const std::vector<Option> server_options = {
+	{"--server", "URL", "also from BHFARM_SERVER; default http://127.0.0.1:7700", ""},
+	{"--token-file", "FILE", "the token in it opens; also from BHFARM_TOKEN_FILE", ""},
+	{"--ca", "FILE", "the certificate authority to trust, PEM; also from BHFARM_CA", ""},
+	{"--help", "", "this", ""},
+};
+
+namespace {
+
+const Option json_option{"--json", "", "for machines", ""};
+const std::atomic<bool> never = false;
+
+Client connect(const Arguments& a) { return Client(access_from(a.get("--server"), a.get("--token-file"), a.get("--ca"))); }
+
+std::int64_t job_number(const Arguments& a) {
+	if (a.rest.size() != 1)
+		throw Error("which job? 'bhfarm status' lists them");
+	return whole_number(a.rest[0], "the job's number", 1, INT64_MAX);
+}
+
+std::string path_of(std::int64_t job, const std::string& more = "") { return "/v1/jobs/" + std::to_string(job) + more; }
+
+std::string moment(double seconds) {
+	const auto t = static_cast<std::time_t>(seconds);
+	std::tm local{};
+	char text[32];
+	std::strftime(text, sizeof text, "%Y-%m-%d %H:%M", localtime_r(&t, &local));
+	return text;
+}
+
+int outcome(const json& job) {
+	const std::string stage = job.value("stage", ""), error = job.value("error", "");
+	say("job " + std::to_string(job.value("id", 0)) + " " + stage + (stage == "done" ? "" : ", " + progress_text(job)) +
+		(error.empty() ? "" : ": " + error));
+	return stage == "done" ? 0 : 1;
+}
+
+} // namespace
+
+std::vector<Option> operator+(std::vector<Option> a, const std::vector<Option>& b) {
+	a.insert(a.end(), b.begin(), b.end());
+	return a;
+}
+
+void help_if_asked(const Arguments& arguments, const std::string& usage, const std::vector<Option>& options) {
+	if (!arguments.has("--help"))
+		return;
+	std::printf("%s\n%s", usage.c_str(), help_lines(options).c_str());
+	throw HelpGiven();
+}
+
+int submit_command(const Words& words) {
+	const auto options = scene_options + std::vector<Option>{json_option} + server_options;
+	const Arguments a(words, options);
+	help_if_asked(a, "bhfarm submit SCENE.ini|SCENE.pov [options] [POV-Ray's own words]\nPrints the job's number.", options);
+	// The server's slots may come and go; a small lab's worth.
+	const Prepared prepared = prepare(a, 16);
+	Client client = connect(a);
+	const std::int64_t id = send_job(client, prepared);
+	if (a.has("--json"))
+		std::puts(client.get(path_of(id)).dump().c_str());
+	else
+		std::printf("%lld\n", static_cast<long long>(id));
+	return 0;
+}
+
+int status_command(const Words& words) {
+	const auto options = std::vector<Option>{json_option} + server_options;
+	const Arguments a(words, options);
+	help_if_asked(a, "bhfarm status [JOB]", options);
+	Client client = connect(a);
+	const json answer = a.rest.empty() ? client.get("/v1/jobs") : json{{"jobs", {client.get(path_of(job_number(a)))}}};
+	if (a.has("--json")) {
+		std::puts((a.rest.empty() ? answer["jobs"] : answer["jobs"][0]).dump().c_str());
+		return 0;
+	}
+	std::vector<std::vector<std::string>> rows = {{"JOB", "NAME", "STAGE", "FRAMES", "STRIPS", "TO GO", "CREATED", ""}};
+	for (const json& j : answer["jobs"]) {
+		const auto part = [&](const char* done, const char* all) {
+			return std::to_string(j.value(done, 0)) + "/" + std::to_string(j.value(all, 0));
+		};
+		rows.push_back(
+			{std::to_string(j.value("id", 0)), j.value("name", ""), j.value("stage", ""), part("frames_done", "frames"),
+				part("strips_done", "strips"), j["eta"].is_number() ? clock_text(j["eta"].get<double>()) : "-",
+				moment(j.value("created", 0.0)), j.value("error", "").empty() ? j.value("doing", "") : j.value("error", "")});
+	}
+	print_table(rows);
+	return 0;
+}
+
+int watch_command(const Words& words) {
+	const auto options = std::vector<Option>{json_option} + server_options;
+	const Arguments a(words, options);
+	help_if_asked(a, "bhfarm watch JOB\nUntil it is done; exit code 0 if it is, 1 if it failed or was cancelled.", options);
+	Client client = connect(a);
+	const json job = follow(client, job_number(a), 600, never);
+	if (a.has("--json"))
+		std::puts(job.dump().c_str());
+	return outcome(job);
+}
+
+int workers_command(const Words& words) {
+	const auto options = std::vector<Option>{json_option} + server_options;
+	const Arguments a(words, options);
+	help_if_asked(a, "bhfarm workers", options);
+	const json answer = connect(a).get("/v1/workers");
+	if (a.has("--json")) {
+		std::puts(answer["workers"].dump().c_str());
+		return 0;
+	}
+	std::vector<std::vector<std::string>> rows = {{"WORKER", "NAME", "FROM", "BUSY", "STRIPS", "HEARD", ""}};
+	for (const json& w : answer["workers"])
+		rows.push_back({w.value("id", ""), w.value("name", ""), w.value("from", ""),
+			std::to_string(w.value("busy", 0)) + "/" + std::to_string(w.value("slots", 0)), std::to_string(w.value("done", 0)),
+			clock_text(w.value("silent", 0.0)),
+			!w.value("aside", "").empty() ? "set aside: " + w.value("aside", "")
+			: w.value("draining", false)  ? "draining"
+										  : ""});
+	print_table(rows);
+	return 0;
+}
+
+int log_command(const Words& words) {
+	const auto options = std::vector<Option>{json_option} + server_options;
+	const Arguments a(words, options);
+	help_if_asked(a, "bhfarm log JOB\nWhat failed, where, and what POV-Ray said.", options);
+	const json answer = connect(a).get(path_of(job_number(a), "/log"));
+	if (a.has("--json")) {
+		std::puts(answer["failures"].dump().c_str());
+		return 0;
+	}
+	for (const json& f : answer["failures"])
+		std::printf("%s frame %d, from row %d, on %s: %s\n%s\n", moment(f.value("when", 0.0)).c_str(), f.value("frame", 0),
+			f.value("row", 0) + 1, f.value("worker", "").c_str(), f.value("line", "").c_str(), f.value("log", "").c_str());
+	return 0;
+}
+
+int fetch_command(const Words& words) {
+	const auto options = std::vector<Option>{{"--to", "DIR", "where to put them", "."}} + server_options;
+	const Arguments a(words, options);
+	help_if_asked(a,
+		"bhfarm fetch JOB\nThe frames that are finished, and the film. Those that are there already are not fetched again.",
+		options);
+	Client client = connect(a);
+	const std::int64_t id = job_number(a);
+	const json job = client.get(path_of(id)), done = client.get(path_of(id, "/pictures"));
+	const fs::path folder = a.get("--to");
+	fs::create_directories(folder);
+	for (const json& picture : done.at("pictures")) {
+		const std::string name = picture.get<std::string>();
+		if (name.find('/') == std::string::npos && !fs::exists(folder / name))
+			client.download(path_of(id, "/frames/" + url_encode(name)), folder / name);
+		std::puts((folder / name).c_str());
+	}
+	if (const std::string film = job.value("film", "");
+		job.value("stage", "") == "done" && !film.empty() && film.find('/') == std::string::npos) {
+		client.download(path_of(id, "/film"), folder / film);
+		std::puts((folder / film).c_str());
+	}
+	return 0;
+}
+
+int change_command(const std::string& what, const Words& words) {
+	const Arguments a(words, server_options);
+	help_if_asked(a, "bhfarm " + what + " JOB", server_options);
+	connect(a).post(path_of(job_number(a), "/" + what), json::object());
+	return 0;
+}
+
+int remove_command(const Words& words) {
+	const Arguments a(words, server_options);
+	help_if_asked(a, "bhfarm remove JOB\nThe job, its frames, and all the server knows of it.", server_options);
+	connect(a).remove(path_of(job_number(a)));
+	return 0;
+}
+
+int drain_command(const Words& words) {
+	const Arguments a(words, server_options);
+	help_if_asked(
+		a, "bhfarm drain WORKER\nThe worker finishes what it has and leaves. 'bhfarm workers' lists them.", server_options);
+	if (a.rest.size() != 1)
+		throw Error("which worker? 'bhfarm workers' lists them");
+	Client client = connect(a);
+	std::string id;
+	for (const json& w : client.get("/v1/workers").at("workers"))
+		if (w.value("id", "") == a.rest[0] || w.value("name", "") == a.rest[0])
+			id = w.value("id", "");
+	if (id.empty())
+		throw Error("there is no worker " + a.rest[0]);
+	client.post("/v1/workers/" + id + "/drain", json::object());
+	return 0;
+}
+
+int token_command(const Words& words) {
+	if (words != Words{"new"})
+		throw Error("'bhfarm token new' prints a new token; put it into the server's --token-file and the workers'");
+	std::puts(random_hex(32).c_str());
+	return 0;
+}
+
+int source_command(const Words&) {
+	std::puts("This farm is free software under the GNU Affero General Public License, version 3 or later.\n"
+			  "Whoever uses it over a network is entitled to its source: ask who runs the server, or see docs/ and LICENSE of "
+			  "the version that runs here.");
+	return 0;
+}
+
+} // namespace farm

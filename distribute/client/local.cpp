@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// bhfarm render: a server and a worker of one's own, for one job.
+#include "distribute/client/commands.h"
+#include "distribute/client/show.h"
+#include "distribute/client/submit.h"
+#include "distribute/common/error.h"
+#include "distribute/common/files.h"
+#include "distribute/common/hash.h"
+#include "distribute/common/process.h"
+
+#include <csignal>
+#include <cstdio>
+#include <optional>
+#include <thread>
+
+namespace farm {
+namespace {
+
+std::atomic<bool> interrupted = false;
+
+void interrupt(int) { interrupted = true; }
+
+/// What goes on of this job from one command to the next: everything hangs on the scene's files, its options and where the
+/// pictures go.
+std::string key_of(const Prepared& p, const fs::path& folder) {
+	return sha256(json(p.scene.spec).dump() + "\n" + folder.string()).substr(0, 24);
+}
+
+std::string wait_for_url(Process& server, const fs::path& file, const fs::path& log) {
+	while (!interrupted) {
+		if (fs::exists(file)) {
+			const std::string url = read_file(file);
+			return url.substr(0, url.find('\n'));
+		}
+		if (server.over(0.02)) {
+			std::string text = fs::exists(log) ? read_file(log) : "";
+			while (!text.empty() && text.back() == '\n')
+				text.pop_back();
+			const std::string line = text.substr(text.rfind('\n') + 1);
+			throw Error(line.empty() ? "the server did not start" : line.substr(std::min(line.size(), line.find(": ") + 2)));
+		}
+	}
+	return "";
+}
+
+void take_over(const fs::path& from, const fs::path& to) {
+	std::error_code other_disk;
+	fs::rename(from, to, other_disk);
+	if (!other_disk)
+		return;
+	const fs::path part = to.string() + ".part";
+	fs::copy_file(from, part, fs::copy_options::overwrite_existing);
+	fs::rename(part, to);
+}
+
+/// Ends a process in order; killed if it will not.
+void end(std::optional<Process>& process, int signal) {
+	if (!process)
+		return;
+	process->signal(signal);
+	if (!process->over(10))
+		process->signal(SIGKILL);
+	process.reset();
+}
+
+} // namespace
+
+int render_command(const Words& words) {
+	const auto options = scene_options + std::vector<Option>{{"--slots", "N", "strips at a time; default one a core", ""},
+											 {"--help", "", "this", ""}};
+	const Arguments a(words, options);
+	help_if_asked(a,
+		"bhfarm render SCENE.ini|SCENE.pov [options] [POV-Ray's own words]\n"
+		"Renders on this machine. After Ctrl-C the same command goes on where it was.",
+		options);
+	const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+	const int slots = a.has("--slots") ? static_cast<int>(a.number("--slots", 1, 1024)) : cores;
+	Prepared prepared = prepare(a, slots);
+	JobSpec& spec = prepared.scene.spec;
+	const fs::path output =
+		fs::absolute(prepared.scene.output.empty() ? fs::path(".") : prepared.scene.output).lexically_normal();
+	const fs::path film = prepared.film.empty() ? fs::path() : fs::absolute(prepared.film);
+	for (const fs::path& folder : {output, film.empty() ? output : film.parent_path()})
+		if (!fs::is_directory(folder))
+			throw Error("there is no folder " + folder.string() + " for the pictures");
+
+	spec.client_key = key_of(prepared, output);
+	const fs::path state = state_folder() / "render" / spec.client_key, spool = state / "spool";
+	fs::create_directories(state);
+	const FileLock lock(state / "lock", "this very job is being rendered already");
+	write_durably(state / "token", random_hex(32) + "\n");
+	fs::permissions(state / "token", fs::perms::owner_read | fs::perms::owner_write);
+	fs::remove(spool / "url");
+
+	std::signal(SIGINT, interrupt);
+	std::signal(SIGTERM, interrupt);
+	std::signal(SIGHUP, interrupt);
+	Command command;
+	command.words = {(program_folder() / "bhfarm-server").string(), "--listen", "127.0.0.1:0", "--spool", spool.string(),
+		"--token-file", (state / "token").string()};
+	command.log = state / "server.log";
+	std::optional<Process> server(std::in_place, command);
+	const std::string url = wait_for_url(*server, spool / "url", command.log);
+	std::optional<Process> worker;
+	json job;
+	if (!interrupted) {
+		command.words = {(program_folder() / "bhfarm-worker").string(), "--server", url, "--token-file",
+			(state / "token").string(), "--slots", std::to_string(slots), "--name", "here", "--nice", "0", "--cache",
+			(state / "cache").string(), "--povray", a.get("--povray")};
+		if (a.get("--povray").empty())
+			command.words.resize(command.words.size() - 2);
+		command.log = state / "worker.log";
+		worker.emplace(command);
+		Client client(access_from(url, (state / "token").string(), ""));
+		const std::int64_t id = send_job(client, prepared);
+		job = client.get("/v1/jobs/" + std::to_string(id));
+		if (job.value("stage", "") == "failed") {
+			client.post("/v1/jobs/" + std::to_string(id) + "/retry", json::object());
+		} else if (const int done = job.value("strips_done", 0); done > 0) {
+			say("going on where it was: " + progress_text(job));
+		}
+		job = follow(client, id, 30, interrupted);
+	}
+	end(worker, SIGINT);
+	end(server, SIGTERM);
+	const std::string stage = job.is_object() ? job.value("stage", "") : "";
+	if (stage != "done") {
+		const std::string error = job.is_object() ? job.value("error", "") : "";
+		say(stage == "failed" ? error : "stopped; the same command goes on where it was");
+		return stage == "failed" ? 1 : 130;
+	}
+	const fs::path made = spool / "jobs" / std::to_string(job.value("id", 0)) / "frames";
+	for (int i = 0; i < spec.frames(); ++i) {
+		const std::string picture = spec.picture(spec.frame(i));
+		take_over(made / picture, output / picture);
+		std::puts((output / picture).c_str());
+	}
+	int code = 0;
+	if (!film.empty() && fs::exists(made / (spec.name + ".mp4"))) {
+		take_over(made / (spec.name + ".mp4"), film);
+		std::puts(film.c_str());
+	} else if (!film.empty()) {
+		say(job.value("error", "there is no film"));
+		code = 1;
+	}
+	std::error_code ignored;
+	fs::remove_all(state, ignored);
+	return code;
+}
+
+} // namespace farm

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "distribute/client/submit.h"
+
+#include "distribute/common/error.h"
+#include "distribute/common/files.h"
+#include "distribute/render/povray.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace farm {
+
+const std::vector<Option> scene_options = {
+	{"--frames", "A-B", "only these of the animation's frames", ""},
+	{"--size", "WxH", "pixels; else what the scene's INI says, or 160x120", ""},
+	{"--strips", "N", "strips a frame is cut to, or auto", "auto"},
+	{"--priority", "P", "higher first, from -100 to 100", "0"},
+	{"--format", "FORMAT", "png or exr; else what the scene's INI says", ""},
+	{"--video", "FILE", "the film, .mp4; default the pictures' name; 'none' for none", ""},
+	{"--fps", "N", "the film's frames a second", "25"},
+	{"--assets", "GLOB", "further files the scene may read, relative to it; may be given again", ""},
+	{"--povray", "FILE", "the povray to run; default the one beside this program", ""},
+};
+
+namespace {
+
+/// Random streams belong to blocks of so many rows, so cuts do too.
+constexpr int block = 32;
+
+int strip_rows(const JobSpec& spec, const std::string& strips, int slots) {
+	if (!spec.whole_because.empty())
+		return spec.height;
+	const int most = (spec.height + block - 1) / block;
+	int count = 0;
+	if (strips == "auto") {
+		// So many strips that the last of them keep every slot busy.
+		count = std::min(most, (8 * slots + spec.frames() - 1) / spec.frames());
+	} else {
+		count = static_cast<int>(whole_number(strips, "--strips", 1, limits::pixels));
+		if (count > most)
+			throw Error("--strips is " + strips + "; a strip has at least " + std::to_string(block) + " rows, so " +
+						std::to_string(spec.height) + " rows make at most " + std::to_string(most));
+	}
+	const int rows = (spec.height + count - 1) / count;
+	return count == 1 ? spec.height : (rows + block - 1) / block * block;
+}
+
+} // namespace
+
+Prepared prepare(const Arguments& arguments, int slots) {
+	Prepared p;
+	p.scene = settle(arguments.rest, {arguments.get("--frames"), arguments.get("--size"), arguments.get("--format")});
+	JobSpec& spec = p.scene.spec;
+	spec.priority = static_cast<int>(arguments.number("--priority", -100, 100));
+	const std::string& video = arguments.get("--video");
+	const double rate = static_cast<double>(arguments.number("--fps", 1, 1000));
+	if (video != "none" && (!video.empty() || spec.frames() > 1)) {
+		if (!spec.animation)
+			throw Error("--video is for animations; the scene has no Final_Frame");
+		spec.film_rate = rate;
+		p.film = video.empty() ? p.scene.output / (spec.name + ".mp4") : fs::path(video);
+		if (p.film.extension() != ".mp4")
+			throw Error("--video is '" + video + "'; its name must end in .mp4");
+	}
+	p.files = gather(p.scene, find_povray(arguments.get("--povray")), arguments.all("--assets"));
+	spec.strip_rows = strip_rows(spec, arguments.get("--strips"), slots);
+	spec.check();
+	for (const auto& remark : p.scene.remarks)
+		say(remark);
+	if (!spec.whole_because.empty())
+		say("frames are rendered whole: " + spec.whole_because);
+	return p;
+}
+
+std::int64_t send_job(Client& client, const Prepared& p) {
+	const json answer = client.post("/v1/bundles", p.files.bundle);
+	for (const auto& hash : answer.at("missing"))
+		client.put_file("/v1/files/" + hash.get<std::string>(), p.files.sources.at(hash.get<std::string>()));
+	return client.post("/v1/jobs", p.scene.spec).at("job").get<std::int64_t>();
+}
+
+} // namespace farm

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "distribute/common/arguments.h"
+
+#include "distribute/common/error.h"
+
+#include <algorithm>
+#include <charconv>
+
+namespace farm {
+
+Arguments::Arguments(const std::vector<std::string>& words, const std::vector<Option>& options) {
+	for (const auto& option : options)
+		defaults[option.name] = option.otherwise;
+	for (size_t i = 0; i < words.size(); ++i) {
+		const std::string& word = words[i];
+		if (word.rfind("--", 0) != 0) {
+			rest.push_back(word);
+			continue;
+		}
+		const size_t equals = word.find('=');
+		const std::string name = word.substr(0, equals);
+		const auto option = std::find_if(options.begin(), options.end(), [&](const Option& o) { return o.name == name; });
+		if (option == options.end())
+			throw Error("there is no option " + name + "; --help lists them");
+		if (option->value.empty()) {
+			if (equals != std::string::npos)
+				throw Error(name + " takes no value");
+			values[name] = "";
+		} else if (equals != std::string::npos) {
+			values[name] = word.substr(equals + 1);
+		} else if (i + 1 < words.size()) {
+			values[name] = words[++i];
+		} else {
+			throw Error(name + " needs a value: " + option->value);
+		}
+		given.emplace_back(name, values[name]);
+	}
+}
+
+const std::string& Arguments::get(const std::string& name) const {
+	const auto found = values.find(name);
+	return found != values.end() ? found->second : defaults.at(name);
+}
+
+std::vector<std::string> Arguments::all(const std::string& name) const {
+	std::vector<std::string> found;
+	for (const auto& [n, value] : given)
+		if (n == name)
+			found.push_back(value);
+	return found;
+}
+
+long Arguments::number(const std::string& name, long least, long most) const {
+	return whole_number(get(name), name, least, most);
+}
+
+long whole_number(const std::string& text, const std::string& what, long least, long most) {
+	long value = 0;
+	const char* end = text.data() + text.size();
+	const auto [at, error] = std::from_chars(text.data(), end, value);
+	if (error != std::errc() || at != end || value < least || value > most)
+		throw Error(
+			what + " is '" + text + "'; it must be a whole number from " + std::to_string(least) + " to " + std::to_string(most));
+	return value;
+}
+
+std::string help_lines(const std::vector<Option>& options) {
+	std::string lines;
+	for (const auto& option : options) {
+		std::string left = "  " + option.name + (option.value.empty() ? "" : " " + option.value);
+		left.resize(std::max<size_t>(left.size() + 2, 28), ' ');
+		lines += left + option.help;
+		if (!option.otherwise.empty())
+			lines += " (default " + option.otherwise + ")";
+		lines += "\n";
+	}
+	return lines;
+}
+
+} // namespace farm

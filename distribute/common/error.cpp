@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "distribute/common/error.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <ctime>
+
+namespace farm {
+namespace {
+std::string program = "bhfarm";
+bool stamped = false;
+} // namespace
+
+Error system_error(const std::string& what) { return Error(what + ": " + std::strerror(errno)); }
+
+void name_program(const std::string& name, bool timestamps) {
+	program = name;
+	stamped = timestamps;
+}
+
+void say(const std::string& line) {
+	char stamp[32] = "";
+	if (stamped) {
+		const std::time_t now = std::time(nullptr);
+		std::tm local{};
+		localtime_r(&now, &local);
+		std::strftime(stamp, sizeof stamp, "%H:%M:%S ", &local);
+	}
+	std::fprintf(stderr, "%s%s: %s\n", stamp, program.c_str(), line.c_str());
+}
+
+} // namespace farm

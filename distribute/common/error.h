@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+/// What goes wrong in the farm, and how a program says so.
+#ifndef FARM_ERROR_H
+#define FARM_ERROR_H
+
+#include <stdexcept>
+#include <string>
+
+namespace farm {
+
+/// Something the user can set right: one line that names the file or the value and what would be right.
+struct Error : std::runtime_error {
+	using std::runtime_error::runtime_error;
+};
+
+/// Unix's word for errno, with what was being done: "cannot write x: No space left on device".
+Error system_error(const std::string& what);
+
+/// To stderr, one line, with the program's name in front and the time if the program is a daemon.
+void say(const std::string& line);
+void name_program(const std::string& name, bool timestamps);
+
+} // namespace farm
+#endif

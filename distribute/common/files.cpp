@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "distribute/common/files.h"
+
+#include "distribute/common/error.h"
+
+#include <cstdlib>
+#include <fcntl.h>
+#include <fstream>
+#include <sstream>
+#include <sys/file.h>
+#include <unistd.h>
+#include <vector>
+
+namespace farm {
+namespace {
+
+void sync_folder(const fs::path& folder) {
+	const int d = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+	if (d < 0)
+		throw system_error("cannot open " + folder.string());
+	const int failed = ::fsync(d);
+	::close(d);
+	if (failed)
+		throw system_error("cannot sync " + folder.string());
+}
+
+fs::path user_folder(const char* variable, const char* otherwise) {
+	const char* xdg = std::getenv(variable);
+	if (xdg && *xdg == '/')
+		return fs::path(xdg) / "bhfarm";
+	const char* home = std::getenv("HOME");
+	return fs::path(home && *home ? home : "/tmp") / otherwise / "bhfarm";
+}
+
+} // namespace
+
+void write_durably(const fs::path& file, std::string_view data) {
+	const fs::path part = file.string() + ".part" + std::to_string(::getpid());
+	const int d = ::open(part.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+	if (d < 0)
+		throw system_error("cannot write " + file.string());
+	const char* at = data.data();
+	size_t left = data.size();
+	bool good = true;
+	while (good && left > 0) {
+		const ssize_t n = ::write(d, at, left);
+		good = n >= 0;
+		if (good) {
+			at += n;
+			left -= static_cast<size_t>(n);
+		}
+	}
+	good = good && ::fsync(d) == 0;
+	const Error error = system_error("cannot write " + file.string());
+	::close(d);
+	if (!good || ::rename(part.c_str(), file.c_str()) != 0) {
+		::unlink(part.c_str());
+		throw error;
+	}
+	sync_folder(file.parent_path());
+}
+
+void move_durably(const fs::path& from, const fs::path& to) {
+	const int d = ::open(from.c_str(), O_RDONLY | O_CLOEXEC);
+	const bool synced = d >= 0 && ::fsync(d) == 0;
+	if (d >= 0)
+		::close(d);
+	if (!synced || ::rename(from.c_str(), to.c_str()) != 0)
+		throw system_error("cannot write " + to.string());
+	sync_folder(to.parent_path());
+}
+
+std::string read_file(const fs::path& file) {
+	std::ifstream in(file, std::ios::binary);
+	std::ostringstream all;
+	// A folder opens, but cannot be read.
+	if (!in || fs::is_directory(file) || (in.peek() != std::ifstream::traits_type::eof() && !(all << in.rdbuf())))
+		throw system_error("cannot read " + file.string());
+	return all.str();
+}
+
+ScratchFolder::ScratchFolder(const fs::path& parent) {
+	std::error_code ignored;
+	fs::create_directories(parent, ignored);
+	const std::string pattern = (parent / "bhfarm-XXXXXX").string();
+	std::vector<char> name(pattern.begin(), pattern.end());
+	name.push_back(0);
+	if (!::mkdtemp(name.data()))
+		throw system_error("cannot make a folder in " + parent.string());
+	folder = name.data();
+}
+
+ScratchFolder::~ScratchFolder() {
+	std::error_code ignored;
+	fs::remove_all(folder, ignored);
+}
+
+FileLock::FileLock(const fs::path& file, const std::string& taken)
+	: descriptor(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644)) {
+	if (descriptor < 0)
+		throw system_error("cannot write " + file.string());
+	if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
+		::close(descriptor);
+		throw Error(taken);
+	}
+}
+
+FileLock::~FileLock() { ::close(descriptor); }
+
+fs::path program_folder() {
+	std::error_code error;
+	const fs::path self = fs::read_symlink("/proc/self/exe", error);
+	return error ? fs::path(".") : self.parent_path();
+}
+
+fs::path state_folder() { return user_folder("XDG_STATE_HOME", ".local/state"); }
+fs::path cache_folder() { return user_folder("XDG_CACHE_HOME", ".cache"); }
+
+} // namespace farm

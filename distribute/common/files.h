@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+/// Files that are there whole or not at all.
+#ifndef FARM_FILES_H
+#define FARM_FILES_H
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace farm {
+
+namespace fs = std::filesystem;
+
+/// Writes beside the file, fsyncs, renames, and fsyncs the folder: after it returns the file survives a power cut. Throws Error,
+/// and leaves nothing behind, if any of that fails.
+void write_durably(const fs::path& file, std::string_view data);
+/// Moves a file that is already written to its place, as durably.
+void move_durably(const fs::path& from, const fs::path& to);
+/// The whole content; throws Error.
+std::string read_file(const fs::path& file);
+
+/// A folder of its own below `parent` (made if need be), removed with all it holds at the end of its life.
+class ScratchFolder {
+public:
+	explicit ScratchFolder(const fs::path& parent);
+	~ScratchFolder();
+	ScratchFolder(const ScratchFolder&) = delete;
+	ScratchFolder& operator=(const ScratchFolder&) = delete;
+	const fs::path& path() const { return folder; }
+
+private:
+	fs::path folder;
+};
+
+/// An exclusive lock on a file, for as long as this lives (flock, so the kernel gives it up when the process dies).
+class FileLock {
+public:
+	/// Throws Error with `taken` as its text if another process has it.
+	FileLock(const fs::path& file, const std::string& taken);
+	~FileLock();
+	FileLock(const FileLock&) = delete;
+	FileLock& operator=(const FileLock&) = delete;
+
+private:
+	int descriptor;
+};
+
+/// The folder this program's file is in.
+fs::path program_folder();
+/// $XDG_STATE_HOME/bhfarm or ~/.local/state/bhfarm; XDG_CACHE_HOME likewise.
+fs::path state_folder();
+fs::path cache_folder();
+
+} // namespace farm
+#endif

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+/// An HTTP/1.1 server on one thread: a coroutine a connection.
+#ifndef FARM_HTTP_SERVER_H
+#define FARM_HTTP_SERVER_H
+
+#include "distribute/http/router.h"
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/ssl/context.hpp>
+
+#include <optional>
+
+namespace farm {
+
+struct ServerSettings {
+	std::vector<std::string> tokens;                   ///< any of them opens; empty: no token is asked for
+	std::filesystem::path tls_certificate, tls_key;    ///< PEM; both empty: plain HTTP
+	std::function<std::filesystem::path()> fresh_file; ///< names for bodies that go to files
+	int connections = 30000;                           ///< more are turned away with 503
+	double header_seconds = 60;                        ///< an idle connection is closed after this
+	double body_seconds = 600;                         ///< the most one body may take
+};
+
+class HttpServer {
+public:
+	/// The router and the context outlive this.
+	HttpServer(boost::asio::io_context& context, const Router& router, ServerSettings settings);
+	/// ADDR:PORT, [V6]:PORT or a host's name; port 0 takes a free one. Throws Error.
+	void listen(const std::string& address);
+	/// Where it listens, as http://127.0.0.1:7700.
+	std::string url() const;
+	/// Takes no new connections.
+	void close();
+	int connections() const { return open; }
+
+private:
+	Awaitable<void> accept();
+	template <class Stream> Awaitable<void> serve(Stream& stream, std::string from);
+	template <class Stream> Awaitable<bool> exchange(Stream& stream, struct Connection& connection);
+	Awaitable<void> connection(boost::asio::ip::tcp::socket socket);
+	bool admits(const Request& request) const;
+
+	boost::asio::io_context& context;
+	const Router& router;
+	ServerSettings settings;
+	std::optional<boost::asio::ssl::context> tls;
+	boost::asio::ip::tcp::acceptor acceptor;
+	int open = 0;
+};
+
+} // namespace farm
+#endif

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "distribute/render/povray.h"
+
+#include "distribute/common/error.h"
+#include "distribute/common/files.h"
+
+#include <cstdlib>
+#include <sstream>
+
+namespace farm {
+namespace {
+
+/// What makes a strip's pixels those of the whole frame: random streams by pixel, not by thread. One thread, so that a slot is a
+/// core.
+const char* const same_pixels = "Work_Threads=1\n";
+
+} // namespace
+
+std::string povray_ini(const JobSpec& spec, int frame) {
+	std::string ini;
+	for (const auto& line : spec.options)
+		ini += line + "\n";
+	ini += "Width=" + std::to_string(spec.width) + "\nHeight=" + std::to_string(spec.height) + "\n";
+	// Initial_Frame and Final_Frame stay as they are, for the clock: with both the same it would be no number.
+	if (spec.animation)
+		ini += "Subset_Start_Frame=" + std::to_string(frame) + "\nSubset_End_Frame=" + std::to_string(frame) + "\n";
+	// -GA would silence errors too.
+	return ini + "Display=Off\nVerbose=Off\nPause_When_Done=Off\nContinue_Trace=Off\n" + same_pixels;
+}
+
+std::string strip_ini(const Task& task, const std::filesystem::path& picture) {
+	const JobSpec& spec = task.spec;
+	std::string ini = povray_ini(spec, task.frame);
+	// Rows count from 1, and 1 itself would mean 100 %: the first and the last are said by saying nothing.
+	if (task.row > 0)
+		ini += "Start_Row=" + std::to_string(task.row + 1) + "\n";
+	if (task.row + task.rows < spec.height)
+		ini += "End_Row=" + std::to_string(task.row + task.rows) + "\n";
+	ini += std::string("Output_To_File=On\nOutput_File_Type=") + (spec.format == Format::png ? "N" : "E") + "\n";
+	ini += "Bits_Per_Color=" + std::to_string(spec.bits) + "\nOutput_File_Name=\"" + picture.string() + "\"\n";
+	return ini;
+}
+
+Command povray_command(const std::filesystem::path& povray, const std::filesystem::path& ini, const std::filesystem::path& home) {
+	Command command;
+	command.words = {povray.string()};
+	command.environment = {
+		{"POVINI", ini.string()}, {"HOME", home.string()}, {"POVINC", home.string()}, {"DISPLAY", ""}, {"LC_ALL", "C"}};
+	return command;
+}
+
+std::string error_line(const std::string& log, int code) {
+	// A message is broken at 80 columns; the lines that go on start with a space. "Possible Parse Error" only announces the real
+	// one.
+	std::istringstream lines(log);
+	std::string found, fatal;
+	bool inside = false;
+	for (std::string line; std::getline(lines, line) && found.size() < 1000;) {
+		if (inside && !line.empty() && line[0] == ' ') {
+			found += line;
+			continue;
+		}
+		inside = false;
+		if (found.empty() && line.find("rror:") != std::string::npos && line.find("Possible Parse Error:") == std::string::npos) {
+			inside = true;
+			found = line;
+		} else if (line.rfind("Fatal error", 0) == 0 || line.rfind("Failed to ", 0) == 0) {
+			fatal = line;
+		}
+	}
+	if (found.empty())
+		found = fatal;
+	std::string tidy;
+	for (const char c : found)
+		if (c != ' ' || (!tidy.empty() && tidy.back() != ' '))
+			tidy += static_cast<unsigned char>(c) < 32 ? ' ' : c;
+	if (!tidy.empty())
+		return tidy;
+	if (code == 127)
+		return "povray could not be run";
+	if (code > 128)
+		return "povray was ended by signal " + std::to_string(code - 128) + (code == 137 ? " (out of memory, perhaps)" : "");
+	return code == 0 ? "povray ended well but wrote no picture"
+					 : "povray ended with exit code " + std::to_string(code) + " and no message";
+}
+
+std::filesystem::path find_povray(const std::string& given) {
+	const char* variable = std::getenv("BHFARM_POVRAY");
+	const fs::path place = !given.empty()          ? fs::path(given)
+						   : variable && *variable ? fs::path(variable)
+												   : program_folder() / "povray";
+	if (!fs::is_regular_file(place))
+		throw Error("there is no povray at " + place.string() + "; --povray says where it is");
+	return fs::absolute(place);
+}
+
+std::string povray_version(const std::filesystem::path& povray) {
+	const ScratchFolder scratch(fs::temp_directory_path());
+	Command command = povray_command(povray, scratch.path() / "none", scratch.path());
+	command.words.push_back("--version");
+	command.log = scratch.path() / "log";
+	const int code = run(command);
+	std::istringstream lines(fs::exists(command.log) ? read_file(command.log) : "");
+	for (std::string line; std::getline(lines, line);)
+		if (line.rfind("POV-Ray ", 0) == 0)
+			return line;
+	throw Error(povray.string() + " --version ended with " + std::to_string(code) + " and named no version");
+}
+
+} // namespace farm

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "distribute/scene/gather.h"
+
+#include "distribute/common/error.h"
+#include "distribute/common/files.h"
+#include "distribute/common/hash.h"
+#include "distribute/render/povray.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <glob.h>
+#include <regex>
+#include <set>
+#include <sstream>
+
+namespace farm {
+namespace {
+
+fs::path reads_library() {
+	const fs::path here = program_folder();
+	for (const char* place : {"bhfarm-reads.so", "../lib/bhfarm/bhfarm-reads.so"})
+		if (fs::exists(here / place))
+			return (here / place).lexically_normal();
+	throw Error("bhfarm-reads.so is missing beside bhfarm; build or install again");
+}
+
+/// The files that one frame reads, as POV-Ray named them.
+std::set<std::string> parse(const SettledScene& scene, int frame, const fs::path& povray, double& longest) {
+	const ScratchFolder scratch(fs::temp_directory_path());
+	const fs::path list = scratch.path() / "reads", ini = scratch.path() / "povray.ini", log = scratch.path() / "log";
+	std::string text = povray_ini(scene.spec, frame);
+	text += "Antialias=Off\nQuality=0\nOutput_To_File=Off\nWork_Threads=1\n";
+	// One pixel. 1 would mean all of them.
+	if (scene.spec.height > 1)
+		text += "Start_Row=" + std::to_string(scene.spec.height) + "\n";
+	if (scene.spec.width > 1)
+		text += "Start_Column=" + std::to_string(scene.spec.width) + "\n";
+	for (const auto& library : scene.libraries)
+		text += ini_line({"Library_Path", library.string()}) + "\n";
+	write_durably(ini, text);
+	Command command = povray_command(povray, ini, scratch.path());
+	command.folder = scene.scene.parent_path();
+	command.log = log;
+	command.environment["LD_PRELOAD"] = reads_library();
+	command.environment["BHFARM_READS"] = list;
+	const auto start = std::chrono::steady_clock::now();
+	const int code = run(command);
+	longest = std::max(longest, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+	if (code != 0)
+		throw Error(code == 127 && !fs::exists(log) ? "cannot run " + povray.string()
+													: error_line(fs::exists(log) ? read_file(log) : "", code));
+	std::set<std::string> names;
+	std::istringstream lines(fs::exists(list) ? read_file(list) : "");
+	for (std::string line; std::getline(lines, line);)
+		if (line != ini)
+			names.insert(line);
+	return names;
+}
+
+/// Below which name the scene asked for a file: POV-Ray looks in its own folder first and then in the libraries.
+std::string asked_name(const std::string& found, const SettledScene& scene) {
+	const fs::path path(found);
+	if (path.is_relative())
+		return path.lexically_normal().string();
+	for (const auto& library : scene.libraries) {
+		// As POV-Ray puts folder and name together.
+		const fs::path inner = fs::path(found).lexically_relative(library);
+		if (!inner.empty() && *inner.begin() != "..")
+			return inner.string();
+	}
+	throw Error("the scene reads " + found + " by an absolute name, which workers do not have; name it relative to the scene");
+}
+
+bool of_the_system(const std::string& name) {
+	for (const char* prefix : {"/proc/", "/sys/", "/dev/", "/etc/", "/usr/lib/", "/lib/", "/usr/share/zoneinfo/"})
+		if (name.rfind(prefix, 0) == 0)
+			return true;
+	return false;
+}
+
+/// Whether the scene's language has a radiosity block; comments and strings aside.
+bool has_radiosity(const fs::path& file) {
+	if (file.extension() != ".pov" && file.extension() != ".inc")
+		return false;
+	std::string text = read_file(file), code;
+	for (size_t i = 0; i < text.size(); ++i) {
+		if (text.compare(i, 2, "//") == 0) {
+			i = std::min(text.find('\n', i), text.size());
+		} else if (text.compare(i, 2, "/*") == 0) {
+			i = std::min(text.find("*/", i + 2), text.size() - 2) + 1;
+		} else if (text[i] == '"') {
+			for (++i; i < text.size() && text[i] != '"'; ++i)
+				i += text[i] == '\\';
+		} else {
+			code += text[i];
+			continue;
+		}
+		code += ' ';
+	}
+	return std::regex_search(code, std::regex("\\bglobal_settings\\b")) &&
+		   std::regex_search(code, std::regex("\\bradiosity\\s*\\{"));
+}
+
+std::vector<std::string> matches(const std::string& pattern, const fs::path& folder) {
+	glob_t found{};
+	std::vector<std::string> names;
+	if (::glob((folder / pattern).c_str(), GLOB_MARK, nullptr, &found) == 0)
+		for (size_t i = 0; i < found.gl_pathc; ++i)
+			if (const std::string name = found.gl_pathv[i]; name.back() != '/')
+				names.push_back(fs::path(name).lexically_relative(folder).string());
+	::globfree(&found);
+	if (names.empty())
+		throw Error("--assets '" + pattern + "' matches no file in " + folder.string());
+	return names;
+}
+
+} // namespace
+
+Gathered gather(SettledScene& scene, const fs::path& povray, const std::vector<std::string>& assets) {
+	const fs::path folder = scene.scene.parent_path();
+	scene.spec.options.push_back(ini_line({"Input_File_Name", scene.scene.filename().string()}));
+	Gathered result;
+	JobSpec& spec = scene.spec;
+	std::set<std::string> reads;
+	const int count = spec.animation ? (spec.last - spec.first) / spec.step + 1 : 1;
+	for (const int index : std::set<int>{0, count / 2, count - 1})
+		reads.merge(parse(scene, spec.frame(index), povray, result.parse_seconds));
+	reads.insert(scene.scene.filename().string());
+
+	std::map<std::string, fs::path> files; // by the name asked for
+	size_t above = 0;
+	for (const auto& name : reads)
+		if (!of_the_system(name)) {
+			const fs::path path = fs::path(name).is_relative() ? folder / name : fs::path(name);
+			if (fs::is_regular_file(path))
+				files.emplace(asked_name(name, scene), path.lexically_normal());
+		}
+	for (const auto& pattern : assets)
+		for (const auto& name : matches(pattern, folder))
+			files.emplace(name, folder / name);
+	// "../images/x.png" needs as many folders above the scene's.
+	for (const auto& [name, path] : files) {
+		const fs::path parts(name);
+		above = std::max<size_t>(above, static_cast<size_t>(std::count(parts.begin(), parts.end(), "..")));
+	}
+	for (size_t i = 0; i < above; ++i)
+		result.bundle.folder += i ? "/up" : "up";
+	for (const auto& [name, path] : files) {
+		const std::string inner = (fs::path(result.bundle.folder) / name).lexically_normal().string();
+		const std::string hash = sha256_file(path);
+		result.bundle.files.push_back({inner, hash, static_cast<std::int64_t>(fs::file_size(path))});
+		result.sources[hash] = path;
+		if (spec.whole_because.empty() && has_radiosity(path))
+			spec.whole_because = "radiosity gathers from the whole frame (" + path.filename().string() + ")";
+	}
+	std::sort(
+		result.bundle.files.begin(), result.bundle.files.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
+	spec.bundle = result.bundle.id();
+	// The same checks as the server's, before anything is sent.
+	json(result.bundle).get<Bundle>();
+	return result;
+}
+
+} // namespace farm

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+/// What a scene reads, found by parsing it: the files for the bundle.
+#ifndef FARM_GATHER_H
+#define FARM_GATHER_H
+
+#include "distribute/scene/settle.h"
+
+#include <map>
+
+namespace farm {
+
+struct Gathered {
+	Bundle bundle;
+	std::map<std::string, std::filesystem::path> sources; ///< where each file of the bundle is here, by its SHA-256
+	double parse_seconds = 0;                             ///< the longest parse
+};
+
+/// Parses the first, the middle and the last frame with `povray`, without rendering, and collects each file that was read;
+/// `assets` are patterns, relative to the scene's folder, of files that other frames read. Fills in what of the job hangs on it:
+/// Input_File_Name, and why frames are not cut. Throws Error with POV-Ray's own words if the scene does not parse, or if it reads
+/// files by absolute names.
+Gathered gather(SettledScene& scene, const std::filesystem::path& povray, const std::vector<std::string>& assets);
+
+} // namespace farm
+#endif

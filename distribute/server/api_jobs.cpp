@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// What submitters and watchers ask.
+#include "distribute/common/error.h"
+#include "distribute/protocol/fields.h"
+#include "distribute/server/api.h"
+
+namespace farm {
+namespace {
+
+/// One character a strip: w waits, o is out, s is settled, x was given up.
+std::string strip_letters(const Farm& farm, const Job& job) {
+	const auto state = farm.schedule().jobs().find(job.row.id);
+	if (state == farm.schedule().jobs().end())
+		return std::string(static_cast<size_t>(job.row.spec.strips()), job.row.stage == Stage::done ? 's' : 'w');
+	std::string letters;
+	letters.reserve(state->second.state.size());
+	for (const StripState s : state->second.state)
+		letters += "wosx"[static_cast<size_t>(s)];
+	return letters;
+}
+
+Awaitable<void> stream_events(Farm& farm, Sink& sink) {
+	Events::Watch watch(farm.news());
+	std::string text = "retry: 2000\n\n";
+	while (co_await sink.write(std::move(text))) {
+		text = co_await watch.next(15);
+		// A comment now and then shows that both ends are there.
+		text = text.empty() ? ":\n\n" : "data: " + text + "\n\n";
+	}
+}
+
+} // namespace
+
+void add_job_routes(Router& router, Farm& farm) {
+	router.add(
+		"POST", "/v1/jobs",
+		[&farm](Request& r) -> Awaitable<Response> {
+			JobSpec spec = parse_object(r.body).get<JobSpec>();
+			const auto bundle = farm.files().bundle(spec.bundle);
+			if (!bundle)
+				throw HttpError(409, "the server does not have bundle " + spec.bundle);
+			for (const auto& file : bundle->files)
+				if (!farm.files().has_file(file.sha256))
+					throw HttpError(409, "the server does not have the bundle's file " + file.name);
+			const JobId id = co_await farm.submit(std::move(spec));
+			co_return answer({{"job", id}}, 201);
+		},
+		limits::message_bytes);
+
+	router.add("GET", "/v1/jobs", [&farm](Request&) -> Awaitable<Response> {
+		json list = json::array();
+		for (const auto& [id, job] : farm.jobs())
+			list.push_back(describe(farm, job));
+		co_return answer({{"jobs", list}});
+	});
+	router.add("GET", "/v1/jobs/*",
+		[&farm](Request& r) -> Awaitable<Response> { co_return answer(describe(farm, farm.job(id_of(r.parts[0], "job")))); });
+	router.add("GET", "/v1/jobs/*/strips", [&farm](Request& r) -> Awaitable<Response> {
+		const Job& job = farm.job(id_of(r.parts[0], "job"));
+		json frames = json::array();
+		for (size_t i = 0; i < job.stitched.size(); ++i)
+			if (job.stitched[i])
+				frames.push_back(job.row.spec.frame(static_cast<int>(i)));
+		co_return answer({{"strips", strip_letters(farm, job)}, {"frames_done", frames}});
+	});
+	router.add("GET", "/v1/jobs/*/pictures", [&farm](Request& r) -> Awaitable<Response> {
+		const Job& job = farm.job(id_of(r.parts[0], "job"));
+		json names = json::array();
+		for (size_t i = 0; i < job.stitched.size(); ++i)
+			if (job.stitched[i])
+				names.push_back(job.row.spec.picture(job.row.spec.frame(static_cast<int>(i))));
+		co_return answer({{"pictures", names}});
+	});
+	router.add("GET", "/v1/jobs/*/log", [&farm](Request& r) -> Awaitable<Response> {
+		const JobId id = id_of(r.parts[0], "job");
+		const JobSpec spec = farm.job(id).row.spec;
+		auto read = [&farm, id] { return farm.book().failures(id); };
+		const auto failures = co_await in_pool(farm.io(), farm.threads(), read);
+		json list = json::array();
+		for (const FailureRow& f : failures)
+			list.push_back({{"strip", f.strip}, {"frame", spec.frame(f.strip / spec.strips_per_frame())},
+				{"row", f.strip % spec.strips_per_frame() * spec.strip_rows}, {"worker", f.worker}, {"when", f.when},
+				{"line", f.line}, {"log", f.log}});
+		co_return answer({{"failures", list}});
+	});
+	router.add("GET", "/v1/jobs/*/frames/*", [&farm](Request& r) -> Awaitable<Response> {
+		const Job& job = farm.job(id_of(r.parts[0], "job"));
+		const JobSpec& spec = job.row.spec;
+		for (int i = 0; i < spec.frames(); ++i)
+			if (spec.picture(spec.frame(i)) == r.parts[1] && job.stitched[static_cast<size_t>(i)]) {
+				Response picture;
+				picture.type = spec.format == Format::png ? "image/png" : "image/x-exr";
+				picture.file = farm.files().frame(job.row.id, r.parts[1]);
+				co_return picture;
+			}
+		throw HttpError(404, "job " + r.parts[0] + " has no finished frame " + r.parts[1]);
+	});
+	router.add("GET", "/v1/jobs/*/film", [&farm](Request& r) -> Awaitable<Response> {
+		const Job& job = farm.job(id_of(r.parts[0], "job"));
+		Response film;
+		film.type = "video/mp4";
+		film.file = farm.files().frame(job.row.id, job.row.spec.name + ".mp4");
+		if (job.row.stage != Stage::done || !fs::exists(film.file))
+			throw HttpError(404, "job " + r.parts[0] + " has no film" + (job.row.error.empty() ? "" : ": " + job.row.error));
+		co_return film;
+	});
+	router.add(
+		"POST", "/v1/jobs/*/pause",
+		[&farm](Request& r) -> Awaitable<Response> {
+			co_await farm.pause(id_of(r.parts[0], "job"), true);
+			co_return answer(json::object());
+		},
+		limits::message_bytes);
+	router.add(
+		"POST", "/v1/jobs/*/resume",
+		[&farm](Request& r) -> Awaitable<Response> {
+			co_await farm.pause(id_of(r.parts[0], "job"), false);
+			co_return answer(json::object());
+		},
+		limits::message_bytes);
+	router.add(
+		"POST", "/v1/jobs/*/cancel",
+		[&farm](Request& r) -> Awaitable<Response> {
+			co_await farm.cancel(id_of(r.parts[0], "job"));
+			co_return answer(json::object());
+		},
+		limits::message_bytes);
+	router.add(
+		"POST", "/v1/jobs/*/retry",
+		[&farm](Request& r) -> Awaitable<Response> {
+			co_await farm.retry(id_of(r.parts[0], "job"));
+			co_return answer(json::object());
+		},
+		limits::message_bytes);
+	router.add("DELETE", "/v1/jobs/*", [&farm](Request& r) -> Awaitable<Response> {
+		co_await farm.remove(id_of(r.parts[0], "job"));
+		co_return answer(json::object());
+	});
+	router.add("GET", "/v1/events", [&farm](Request&) -> Awaitable<Response> {
+		Response news;
+		news.type = "text/event-stream";
+		news.headers["Cache-Control"] = "no-store";
+		news.stream = [&farm](Sink& sink) { return stream_events(farm, sink); };
+		co_return news;
+	});
+}
+
+} // namespace farm

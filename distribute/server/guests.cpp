@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The workers' side of the farm: they come, take strips, answer, and go.
+#include "distribute/common/error.h"
+#include "distribute/common/hash.h"
+#include "distribute/server/farm.h"
+#include "distribute/stitch/picture.h"
+
+#include <algorithm>
+
+namespace farm {
+
+void Farm::welcome(const Hello& hello, const std::string& from) {
+	Guest& guest = all_guests[hello.id];
+	if (guest.hello.id.empty()) {
+		guest.since = wall_time();
+		say("worker " + hello.name + " from " + from + " has " + std::to_string(hello.slots) +
+			(hello.slots == 1 ? " slot" : " slots"));
+	}
+	guest.hello = hello;
+	guest.from = from;
+	scheduler.add_worker(hello.id, hello.slots, now(), false);
+	events.tell({{"event", "worker"}, {"worker", hello.id}});
+}
+
+Awaitable<void> Farm::leave(WorkerId worker) {
+	Changes changes;
+	scheduler.remove_worker(worker, changes);
+	if (const auto guest = all_guests.find(worker); guest != all_guests.end()) {
+		say("worker " + guest->second.hello.name + " leaves");
+		all_guests.erase(guest);
+	}
+	apply(changes);
+	events.tell({{"event", "gone"}, {"worker", worker}});
+	co_return;
+}
+
+void Farm::drain(const WorkerId& worker, bool draining) {
+	if (!all_guests.count(worker))
+		throw HttpError(404, "there is no worker " + worker);
+	scheduler.drain(worker, draining);
+}
+
+Awaitable<std::optional<Task>> Farm::take(WorkerId worker, double wait) {
+	const Time until = now() + wait;
+	while (true) {
+		if (!scheduler.workers().count(worker))
+			throw HttpError(404, "this server does not know worker " + worker + "; say hello first");
+		if (const auto lease = scheduler.take(worker, now())) {
+			Ledger::Work work = [l = *lease](Database& db) { rows::add_lease(db, l); };
+			try {
+				co_await commit(std::move(work));
+			} catch (const HttpError&) {
+				scheduler.give_back(lease->id);
+				throw;
+			}
+			const auto found = all_jobs.find(lease->job);
+			if (!scheduler.lease(lease->id) || found == all_jobs.end())
+				continue; // cancelled meanwhile
+			const JobSpec& spec = found->second.row.spec;
+			Task task;
+			task.lease = lease->id;
+			task.job = lease->job;
+			task.frame = spec.frame(lease->strip / spec.strips_per_frame());
+			task.row = lease->strip % spec.strips_per_frame() * spec.strip_rows;
+			task.rows = std::min(spec.strip_rows, spec.height - task.row);
+			task.spec = spec;
+			events.tell({{"event", "out"}, {"job", task.job}, {"strip", lease->strip}, {"worker", worker}});
+			co_return task;
+		}
+		const double left = until - now();
+		if (left <= 0)
+			co_return std::nullopt;
+		auto bell = std::make_shared<Bell>(context);
+		sleepers.push_back(bell);
+		if (!co_await bell->wait(left))
+			sleepers.erase(std::remove(sleepers.begin(), sleepers.end(), bell), sleepers.end());
+	}
+}
+
+std::vector<LeaseId> Farm::beat(const WorkerId& worker, const std::vector<LeaseId>& leases) {
+	if (!scheduler.workers().count(worker))
+		throw HttpError(404, "this server does not know worker " + worker + "; say hello first");
+	return scheduler.beat(worker, leases, now());
+}
+
+Awaitable<std::string> Farm::report(LeaseId id, fs::path file, std::string sha256, double seconds) {
+	const Lease* known = scheduler.lease(id);
+	if (!known)
+		co_return "lease " + std::to_string(id) + " has ended";
+	const Lease lease = *known;
+	// The checks below must not outlast it.
+	scheduler.beat(lease.worker, {id}, now());
+	const JobSpec spec = job(lease.job).row.spec;
+	const int row = lease.strip % spec.strips_per_frame() * spec.strip_rows, rows = std::min(spec.strip_rows, spec.height - row);
+
+	struct Checked {
+		std::string pixels, damage;
+		bool torn = false;
+	};
+	auto check = [=, this] {
+		Checked c;
+		c.torn = sha256_file(file) != sha256;
+		if (c.torn)
+			return c;
+		try {
+			c.pixels = check_strip(spec, row, rows, file);
+		} catch (const Error& e) {
+			c.damage = e.what();
+			return c;
+		}
+		move_durably(file, spool.strip(lease.job, lease.strip, c.pixels, spec.suffix()));
+		return c;
+	};
+	const Checked checked = co_await in_pool(context, pool, std::move(check));
+	if (checked.torn)
+		throw HttpError(422, "the strip was damaged on its way: send it again");
+	if (!checked.damage.empty()) {
+		Failure failure;
+		failure.line = "the worker sent no good picture: " + checked.damage;
+		co_return co_await failed(id, std::move(failure));
+	}
+	const ReportRow report{lease.job, lease.strip, lease.worker, checked.pixels, seconds, false};
+	Ledger::Work work = [=](Database& db) {
+		rows::add_report(db, report);
+		rows::end_lease(db, id);
+	};
+	co_await commit(std::move(work));
+	Changes changes;
+	const bool taken = scheduler.complete(id, std::stoull(checked.pixels.substr(0, 16), nullptr, 16), now(), changes);
+	apply(changes);
+	co_return taken ? "" : "lease " + std::to_string(id) + " has ended";
+}
+
+Awaitable<std::string> Farm::failed(LeaseId id, Failure failure) {
+	const Lease* known = scheduler.lease(id);
+	if (!known)
+		co_return "lease " + std::to_string(id) + " has ended";
+	const Lease lease = *known;
+	const auto guest = all_guests.find(lease.worker);
+	const std::string name = guest == all_guests.end() ? lease.worker : guest->second.hello.name;
+	say("job " + std::to_string(lease.job) + ", " + place(job(lease.job).row.spec, lease.strip) + " failed on " + name + ": " +
+		failure.line);
+	Ledger::Work work = [=](Database& db) {
+		rows::add_failure(db, {lease.job, lease.strip, name, wall_time(), failure.line, failure.log});
+		rows::end_lease(db, id);
+	};
+	co_await commit(std::move(work));
+	Changes changes;
+	scheduler.fail(id, now(), changes);
+	apply(changes);
+	events.tell(
+		{{"event", "failed"}, {"job", lease.job}, {"strip", lease.strip}, {"worker", lease.worker}, {"line", failure.line}});
+	wake(1);
+	co_return "";
+}
+
+Awaitable<std::string> Farm::give_back(LeaseId id) {
+	const bool known = scheduler.give_back(id);
+	note([id](Database& db) { rows::end_lease(db, id); });
+	wake(1);
+	co_return known ? "" : "lease " + std::to_string(id) + " has ended";
+}
+
+} // namespace farm

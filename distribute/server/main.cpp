@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// bhfarm-server: keeps the ledger, lends strips, stitches frames.
+#include "distribute/common/arguments.h"
+#include "distribute/common/error.h"
+#include "distribute/http/server.h"
+#include "distribute/server/api.h"
+
+#include <boost/asio/signal_set.hpp>
+
+#include <cstdio>
+#include <sstream>
+#include <sys/resource.h>
+
+namespace {
+
+using namespace farm;
+
+const std::vector<Option> options = {
+	{"--listen", "ADDR:PORT", "where to listen; other than on loopback a token is needed", "127.0.0.1:7700"},
+	{"--spool", "DIR", "the server's folder; default $XDG_STATE_HOME/bhfarm/spool", ""},
+	{"--token-file", "FILE", "tokens that let in, one a line; also from BHFARM_TOKEN_FILE", ""},
+	{"--tls-cert", "FILE", "certificate chain, PEM", ""},
+	{"--tls-key", "FILE", "its key, PEM", ""},
+	{"--lease", "SECONDS", "a worker that is silent for so long loses its strips", "20"},
+	{"--check-every", "N", "one strip in N, and each worker's first, is rendered by two; 0: none", "32"},
+	{"--help", "", "this", ""},
+};
+
+std::vector<std::string> read_tokens(const std::string& given) {
+	const std::string file = given.empty() && std::getenv("BHFARM_TOKEN_FILE") ? std::getenv("BHFARM_TOKEN_FILE") : given;
+	std::vector<std::string> tokens;
+	if (file.empty())
+		return tokens;
+	std::istringstream lines(read_file(file));
+	for (std::string line; std::getline(lines, line);)
+		if (line = line.substr(0, line.find_first_of("\r \t#")); !line.empty())
+			tokens.push_back(line);
+	if (tokens.empty())
+		throw Error("the token file " + file + " has no token; 'bhfarm token new' makes one");
+	return tokens;
+}
+
+bool on_loopback(const std::string& address) {
+	const std::string host = address.substr(0, address.rfind(':'));
+	return host == "localhost" || host == "[::1]" || host.rfind("127.", 0) == 0;
+}
+
+int serve(const Arguments& arguments) {
+	boost::asio::io_context context(1);
+	FarmSettings settings;
+	settings.spool = arguments.get("--spool").empty() ? state_folder() / "spool" : fs::path(arguments.get("--spool"));
+	settings.rules.lease = static_cast<double>(arguments.number("--lease", 1, 86400));
+	settings.rules.check_every = static_cast<int>(arguments.number("--check-every", 0, 1000000));
+	ServerSettings http;
+	http.tokens = read_tokens(arguments.get("--token-file"));
+	http.tls_certificate = arguments.get("--tls-cert");
+	http.tls_key = arguments.get("--tls-key");
+	if (http.tls_certificate.empty() != http.tls_key.empty())
+		throw Error("--tls-cert and --tls-key go together");
+	const std::string& address = arguments.get("--listen");
+	if (http.tokens.empty() && !on_loopback(address))
+		throw Error("--listen " + address + " is open to others: give a --token-file ('bhfarm token new' makes one)");
+
+	// A connection is a descriptor.
+	rlimit descriptors{};
+	if (getrlimit(RLIMIT_NOFILE, &descriptors) == 0) {
+		descriptors.rlim_cur = descriptors.rlim_max;
+		setrlimit(RLIMIT_NOFILE, &descriptors);
+	}
+
+	Farm farm(context, settings);
+	Router router;
+	router.add(
+		"GET", "/health",
+		[](Request&) -> Awaitable<Response> {
+			co_return answer({{"ok", true}, {"protocol", protocol_version}});
+		},
+		0, Body::memory, Access::open);
+	add_job_routes(router, farm);
+	add_worker_routes(router, farm);
+	add_bundle_routes(router, farm);
+	http.fresh_file = [&farm] { return farm.files().fresh(); };
+	HttpServer server(context, router, http);
+	server.listen(address);
+	write_durably(farm.files().url(), server.url() + "\n");
+	say("listening on " + server.url() + ", spool " + fs::absolute(settings.spool).string());
+
+	boost::asio::signal_set signals(context, SIGINT, SIGTERM);
+	signals.async_wait([&](const boost::system::error_code&, int) { context.stop(); });
+	context.run();
+	server.close();
+	std::error_code ignored;
+	fs::remove(farm.files().url(), ignored);
+	return 0;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+	name_program("bhfarm-server", true);
+	try {
+		const Arguments arguments({argv + 1, argv + argc}, options);
+		if (arguments.has("--help")) {
+			std::printf("bhfarm-server [options]\nKeeps jobs and lends their strips to workers. docs/manual.md has more.\n%s",
+				help_lines(options).c_str());
+			return 0;
+		}
+		if (!arguments.rest.empty())
+			throw Error("what is '" + arguments.rest[0] + "'? --help lists the options");
+		return serve(arguments);
+	} catch (const std::exception& e) {
+		name_program("bhfarm-server", false);
+		say(e.what());
+		return 1;
+	}
+}

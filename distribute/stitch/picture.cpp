@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "distribute/stitch/picture.h"
+
+namespace farm {
+
+void cut(Format format, const std::filesystem::path& whole, int row, int rows, const std::filesystem::path& strip) {
+	format == Format::png ? png::cut(whole, row, rows, strip) : exr::cut(whole, row, rows, strip);
+}
+
+std::string check_strip(const JobSpec& spec, int row, int rows, const std::filesystem::path& strip) {
+	return spec.format == Format::png ? png::check_strip(spec, rows, strip) : exr::check_strip(spec, row, rows, strip);
+}
+
+void stitch(const JobSpec& spec, const std::vector<std::filesystem::path>& strips, const std::filesystem::path& picture) {
+	spec.format == Format::png ? png::stitch(spec, strips, picture) : exr::stitch(spec, strips, picture);
+}
+
+} // namespace farm

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "distribute/common/error.h"
+#include "distribute/common/hash.h"
+#include "distribute/stitch/picture.h"
+
+#include <png.h>
+
+#include <cstdio>
+#include <memory>
+#include <utility>
+
+namespace farm::png {
+namespace {
+
+using Path = std::filesystem::path;
+using Row = std::vector<png_byte>;
+
+// libpng lets an error function leave by an exception (libpng-manual, "Error handling").
+[[noreturn]] void fail(png_structp png, png_const_charp message) {
+	throw Error(*static_cast<const std::string*>(png_get_error_ptr(png)) + ": " + message);
+}
+void hush(png_structp, png_const_charp) {}
+
+struct Closer {
+	void operator()(std::FILE* f) const { std::fclose(f); }
+};
+using File = std::unique_ptr<std::FILE, Closer>;
+
+/// What a picture is made of, apart from its height.
+struct Kind {
+	png_uint_32 width = 0;
+	int depth = 0, colours = 0;
+	bool has_gamma = false, has_srgb = false;
+	png_fixed_point gamma = 0;
+	int intent = 0;
+
+	bool operator==(const Kind& o) const {
+		return width == o.width && depth == o.depth && colours == o.colours && has_gamma == o.has_gamma &&
+			   has_srgb == o.has_srgb && gamma == o.gamma && intent == o.intent;
+	}
+};
+
+class Reader {
+public:
+	explicit Reader(const Path& path) : name(path.string()), file(std::fopen(path.c_str(), "rb")) {
+		if (!file)
+			throw system_error("cannot read " + name);
+		png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &name, fail, hush);
+		info = png_create_info_struct(png);
+		try {
+			png_init_io(png, file.get());
+			png_set_crc_action(png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
+			png_read_info(png, info);
+			int interlace = 0;
+			png_get_IHDR(png, info, &kind.width, &height, &kind.depth, &kind.colours, &interlace, nullptr, nullptr);
+			if (interlace != PNG_INTERLACE_NONE || kind.colours == PNG_COLOR_TYPE_PALETTE)
+				throw Error(name + ": a PNG of this kind is none of povray's");
+			kind.has_gamma = png_get_gAMA_fixed(png, info, &kind.gamma) != 0;
+			kind.has_srgb = png_get_sRGB(png, info, &kind.intent) != 0;
+		} catch (...) {
+			png_destroy_read_struct(&png, &info, nullptr);
+			throw;
+		}
+	}
+	~Reader() { png_destroy_read_struct(&png, &info, nullptr); }
+	Reader(const Reader&) = delete;
+
+	void next(Row& row) {
+		row.resize(png_get_rowbytes(png, info));
+		png_read_row(png, row.data(), nullptr);
+	}
+	/// What follows the last row must be whole too.
+	void end() { png_read_end(png, nullptr); }
+
+	Kind kind;
+	png_uint_32 height = 0;
+
+private:
+	std::string name;
+	File file;
+	png_structp png;
+	png_infop info;
+};
+
+class Writer {
+public:
+	Writer(const Path& path, const Kind& kind, int height, int compression)
+		: name(path.string()), file(std::fopen(path.c_str(), "wb")) {
+		if (!file)
+			throw system_error("cannot write " + name);
+		png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &name, fail, hush);
+		info = png_create_info_struct(png);
+		try {
+			png_init_io(png, file.get());
+			png_set_compression_level(png, compression);
+			png_set_IHDR(png, info, kind.width, static_cast<png_uint_32>(height), kind.depth, kind.colours, PNG_INTERLACE_NONE,
+				PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+			if (kind.has_srgb)
+				png_set_sRGB(png, info, kind.intent);
+			if (kind.has_gamma)
+				png_set_gAMA_fixed(png, info, kind.gamma);
+			png_write_info(png, info);
+		} catch (...) {
+			png_destroy_write_struct(&png, &info);
+			throw;
+		}
+	}
+	~Writer() { png_destroy_write_struct(&png, &info); }
+	Writer(const Writer&) = delete;
+
+	void next(Row& row) { png_write_row(png, row.data()); }
+	void end() {
+		png_write_end(png, info);
+		if (std::fclose(file.release()) != 0)
+			throw system_error("cannot write " + name);
+	}
+
+private:
+	std::string name;
+	File file;
+	png_structp png;
+	png_infop info;
+};
+
+/// Strips are packed quickly, pictures well.
+constexpr int quick = 1, well = 6;
+
+} // namespace
+
+void cut(const Path& whole, int row, int rows, const Path& strip) {
+	Reader in(whole);
+	if (in.height < static_cast<png_uint_32>(row + rows))
+		throw Error(
+			whole.string() + " has " + std::to_string(in.height) + " rows; " + std::to_string(row + rows) + " are needed");
+	Writer out(strip, in.kind, rows, quick);
+	Row pixels;
+	for (int i = 0; i < row + rows; ++i) {
+		in.next(pixels);
+		if (i >= row)
+			out.next(pixels);
+	}
+	out.end();
+}
+
+std::string check_strip(const JobSpec& spec, int rows, const Path& strip) {
+	Reader in(strip);
+	if (in.kind.width != static_cast<png_uint_32>(spec.width) || in.height != static_cast<png_uint_32>(rows) ||
+		in.kind.depth != spec.bits)
+		throw Error("the strip is " + std::to_string(in.kind.width) + "x" + std::to_string(in.height) + " of " +
+					std::to_string(in.kind.depth) + " bits; " + std::to_string(spec.width) + "x" + std::to_string(rows) + " of " +
+					std::to_string(spec.bits) + " are needed");
+	Row pixels;
+	std::string all = "png " + std::to_string(in.kind.colours) + " " + std::to_string(in.kind.depth) + " " +
+					  std::to_string(in.kind.gamma) + "\n";
+	for (int i = 0; i < rows; ++i) {
+		in.next(pixels);
+		all.append(reinterpret_cast<const char*>(pixels.data()), pixels.size());
+	}
+	in.end();
+	return sha256(all);
+}
+
+void stitch(const JobSpec& spec, const std::vector<Path>& strips, const Path& picture) {
+	const Kind kind = Reader(strips.at(0)).kind;
+	Writer out(picture, kind, spec.height, well);
+	int done = 0;
+	Row pixels;
+	for (const auto& strip : strips) {
+		Reader in(strip);
+		if (!(in.kind == kind))
+			throw Error(strip.string() + " is of another kind than " + strips[0].string());
+		for (png_uint_32 i = 0; i < in.height && done < spec.height; ++i, ++done) {
+			in.next(pixels);
+			out.next(pixels);
+		}
+	}
+	if (done != spec.height)
+		throw Error(picture.string() + ": its strips have " + std::to_string(done) + " rows");
+	out.end();
+}
+
+} // namespace farm::png

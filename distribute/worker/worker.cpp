@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "distribute/worker/worker.h"
+
+#include "distribute/common/error.h"
+#include "distribute/common/hash.h"
+#include "distribute/render/povray.h"
+#include "distribute/stitch/picture.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
+#include <thread>
+
+namespace farm {
+namespace {
+
+/// Doubles from a tenth of a second to ten, a little different for each so that they do not all come at once.
+class Backoff {
+public:
+	double next() {
+		seconds = std::min(10.0, seconds * 2);
+		return seconds * (0.5 + std::rand() / (RAND_MAX + 1.0));
+	}
+	void reset() { seconds = 0.05; }
+
+private:
+	double seconds = 0.05;
+};
+
+std::string tail(const std::string& text, size_t most) { return text.size() <= most ? text : text.substr(text.size() - most); }
+
+} // namespace
+
+Worker::Worker(const WorkerSettings& s) : settings(s), cache(s.cache) {
+	self.id = random_hex(16);
+	self.name = settings.name;
+	self.slots = settings.slots;
+	self.povray = povray_version(settings.povray);
+	std::srand(static_cast<unsigned>(std::stoul(self.id.substr(0, 7), nullptr, 16)));
+}
+
+void Worker::pause(double seconds) {
+	std::unique_lock lock(mutex);
+	wake.wait_for(lock, std::chrono::duration<double>(seconds), [this] { return over || stopping; });
+}
+
+void Worker::stop(bool finish) {
+	{
+		const std::lock_guard lock(mutex);
+		stopping = true;
+		deadline =
+			std::min(deadline, Clock::now() + std::chrono::milliseconds(finish ? static_cast<long>(1000 * settings.grace) : 0));
+	}
+	wake.notify_all();
+}
+
+bool Worker::give_up_now() {
+	const std::lock_guard lock(mutex);
+	return Clock::now() >= deadline;
+}
+
+bool Worker::lost(std::int64_t lease) {
+	const std::lock_guard lock(mutex);
+	return dropped.count(lease) > 0;
+}
+
+void Worker::hello(Client& client) {
+	const json answer = client.post("/v1/workers", self);
+	beat_every = std::clamp(answer.value("lease_seconds", 20.0) / 4, 0.2, 30.0);
+}
+
+void Worker::run() {
+	Client client(settings.server);
+	client.stop_when(&stopping);
+	Backoff backoff;
+	for (bool said = false; !stopping;) {
+		try {
+			hello(client);
+			say("at work for " + settings.server.url + " as " + self.name + ", " + std::to_string(self.slots) +
+				(self.slots == 1 ? " slot" : " slots"));
+			break;
+		} catch (const Unreachable& e) {
+			if (!said)
+				say(std::string(e.what()) + "; trying on");
+			said = true;
+			pause(backoff.next());
+		}
+	}
+	std::thread touch([this] { keep_touch(); });
+	std::vector<std::thread> slots;
+	for (int i = 0; i < settings.slots; ++i)
+		slots.emplace_back([this] { serve_slot(); });
+	for (auto& slot : slots)
+		slot.join();
+	{
+		const std::lock_guard lock(mutex);
+		over = true;
+	}
+	wake.notify_all();
+	touch.join();
+	try {
+		Client(settings.server).remove("/v1/workers/" + self.id);
+	} catch (const Error&) { // its leases run out by themselves
+	}
+}
+
+void Worker::keep_touch() {
+	Client client(settings.server);
+	while (true) {
+		std::vector<std::int64_t> leases;
+		{
+			std::unique_lock lock(mutex);
+			wake.wait_for(lock, std::chrono::duration<double>(beat_every.load()), [this] { return over; });
+			if (over)
+				return;
+			leases.assign(held.begin(), held.end());
+		}
+		try {
+			const json answer = client.post("/v1/workers/" + self.id + "/heartbeat", {{"leases", leases}});
+			const std::lock_guard lock(mutex);
+			for (const auto& lease : answer.at("drop"))
+				if (held.count(lease.get<std::int64_t>()))
+					dropped.insert(lease.get<std::int64_t>());
+			if (answer.value("draining", false) && !stopping) {
+				say("told to leave; finishing");
+				stopping = true;
+			}
+		} catch (const Refused& e) {
+			if (e.status != 404)
+				say(e.what());
+			else // the server has forgotten us; what we hold it may still know
+				try {
+					hello(client);
+				} catch (const Error&) {
+				}
+		} catch (const std::exception&) { // the next one will do
+		}
+	}
+}
+
+void Worker::serve_slot() {
+	Client client(settings.server);
+	client.stop_when(&stopping);
+	Client sending(settings.server); // goes on while stopping
+	Backoff backoff;
+	while (!stopping) {
+		try {
+			const double wait = settings.idle_exit > 0 ? std::min(30.0, settings.idle_exit) : 30.0;
+			const json answer = client.post("/v1/workers/" + self.id + "/take", {{"wait", wait}}, wait);
+			backoff.reset();
+			if (answer.is_null()) {
+				const std::lock_guard lock(mutex);
+				const bool idle = busy == 0 && settings.idle_exit > 0;
+				if (idle && Clock::now() - last_work > std::chrono::duration<double>(settings.idle_exit))
+					stopping = true;
+				continue;
+			}
+			const Task task = answer.get<Task>();
+			{
+				const std::lock_guard lock(mutex);
+				held.insert(task.lease);
+				++busy;
+			}
+			work_on(sending, task);
+			const std::lock_guard lock(mutex);
+			held.erase(task.lease);
+			dropped.erase(task.lease);
+			--busy;
+			last_work = Clock::now();
+		} catch (const Refused& e) {
+			if (e.status == 404) {
+				try {
+					hello(client);
+					continue;
+				} catch (const Error&) {
+				}
+			} else {
+				say(e.what());
+			}
+			pause(backoff.next());
+		} catch (const std::exception&) {
+			pause(backoff.next());
+		}
+	}
+}
+
+void Worker::insist(std::int64_t lease, const std::function<json()>& ask) {
+	Backoff backoff;
+	for (int refused = 0; !lost(lease);) {
+		try {
+			ask();
+			return;
+		} catch (const Refused& e) {
+			say("lease " + std::to_string(lease) + ": " + e.what());
+			// What the server cannot do now it may do later; what it will not do once more is not worth a third time.
+			if (e.status < 500 && e.status != 401 && ++refused > 5)
+				return;
+		} catch (const Unreachable&) {
+		}
+		// Stopping too waits for an answer, within its grace.
+		if (give_up_now())
+			return;
+		std::this_thread::sleep_for(std::chrono::duration<double>(backoff.next()));
+	}
+}
+
+void Worker::work_on(Client& client, const Task& task) {
+	const std::string path = "/v1/leases/" + std::to_string(task.lease);
+	Failure failure;
+	try {
+		const ScratchFolder scratch(settings.scratch);
+		fs::path root, folder;
+		insist(task.lease, [&] {
+			folder = cache.bundle(client, task.spec.bundle, root);
+			return json();
+		});
+		if (folder.empty())
+			throw Error("the scene's files could not be fetched");
+		// povray adds the frame's number to the name, so a folder of its own tells what it wrote.
+		const fs::path out = scratch.path() / "out", strip = scratch.path() / ("strip" + task.spec.suffix());
+		fs::create_directory(out);
+		const fs::path ini = scratch.path() / "strip.ini", log = scratch.path() / "log";
+		write_durably(ini, strip_ini(task, out / ("whole" + task.spec.suffix())));
+		Command command = povray_command(settings.povray, ini, scratch.path());
+		command.folder = folder;
+		command.log = log;
+		command.nice = settings.nice;
+		const auto start = Clock::now();
+		Process process(command);
+		while (!process.over(0.1)) {
+			if (lost(task.lease))
+				return; // somebody else has done it
+			if (stopping && give_up_now()) {
+				client.post(path + "/return", json::object());
+				return;
+			}
+		}
+		const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+		const std::string output = fs::exists(log) ? read_file(log) : "";
+		fs::path whole;
+		for (const auto& entry : fs::directory_iterator(out))
+			if (entry.path().extension() == task.spec.suffix())
+				whole = entry.path();
+		if (process.code() != 0 || whole.empty()) {
+			failure = {tail(error_line(output, process.code()), 1900), tail(output, static_cast<size_t>(limits::log_bytes) / 2)};
+		} else {
+			cut(task.spec.format, whole, task.row, task.rows, strip);
+			const std::string to = path + "/strip?sha256=" + sha256_file(strip) + "&seconds=" + std::to_string(seconds);
+			insist(task.lease, [&] { return client.put_file(to, strip); });
+			return;
+		}
+	} catch (const Error& e) {
+		failure.line = tail(e.what(), 1900);
+	} catch (const std::exception& e) {
+		failure.line = tail(e.what(), 1900);
+	}
+	say("job " + std::to_string(task.job) + ", frame " + std::to_string(task.frame) + ": " + failure.line);
+	insist(task.lease, [&] { return client.post(path + "/failure", failure); });
+}
+
+} // namespace farm

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+/// A worker: takes strips from a server, has povray render them, sends them in.
+#ifndef FARM_WORKER_H
+#define FARM_WORKER_H
+
+#include "distribute/http/client.h"
+#include "distribute/protocol/messages.h"
+#include "distribute/worker/cache.h"
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <set>
+
+namespace farm {
+
+struct WorkerSettings {
+	Access_to server;
+	std::string name;     ///< for people
+	int slots = 1;        ///< strips at a time
+	double idle_exit = 0; ///< seconds without work after which it leaves; 0: stays
+	double grace = 20;    ///< seconds that a strip may still take after SIGTERM
+	int nice = 19;
+	fs::path povray, cache, scratch;
+};
+
+class Worker {
+public:
+	explicit Worker(const WorkerSettings& settings);
+	/// Until it is told to stop or has been idle for long enough. Call once.
+	void run();
+	/// Takes nothing new. Strips under way go on for `grace` seconds if `finish`, else they are given back at once. From any
+	/// thread.
+	void stop(bool finish);
+
+private:
+	using Clock = std::chrono::steady_clock;
+	void serve_slot();
+	void keep_touch();
+	void hello(Client& client);
+	void work_on(Client& client, const Task& task);
+	/// Asks until there is an answer, or the lease or all hope is lost.
+	void insist(std::int64_t lease, const std::function<json()>& ask);
+	bool lost(std::int64_t lease);
+	void pause(double seconds);
+	bool give_up_now();
+
+	WorkerSettings settings;
+	Hello self;
+	Cache cache;
+	std::atomic<bool> stopping = false, aborting = false;
+	std::atomic<double> beat_every = 1;
+	std::mutex mutex;
+	std::condition_variable wake;
+	std::set<std::int64_t> held, dropped;
+	Clock::time_point deadline = Clock::time_point::max(), last_work = Clock::now();
+	int busy = 0;
+	bool over = false;
+};
+
+} // namespace farm
+#endif

@@ -1,0 +1,173 @@
+# SPDX-License-Identifier: AGPL-3.0-or-later
+"""The farm's programs as a test runs them: in a folder and a home of their own, ended with the test."""
+import atexit
+import json
+import os
+import shutil
+import signal
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+import urllib.error
+import urllib.request
+import zlib
+
+BIN = sys.argv[1]
+WORK = tempfile.mkdtemp(prefix="farm-test-")
+ENV = dict(os.environ, HOME=WORK + "/home")
+for name in ("BHFARM_SERVER", "BHFARM_TOKEN_FILE", "BHFARM_CA", "POVINI", "XDG_STATE_HOME", "XDG_CACHE_HOME"):
+    ENV.pop(name, None)
+running = []
+
+
+def clean():
+    for p in running:
+        if p.poll() is None:
+            p.kill()
+            p.wait()
+    shutil.rmtree(WORK, ignore_errors=True)
+
+
+atexit.register(clean)
+
+SCENE = """#version 3.7;
+global_settings { assumed_gamma 1 }
+#include "colors.inc"
+#include "parts/sky.inc"
+camera { location <0, 2 + 2*clock, -14> look_at 0 angle 40 }
+blackhole { 0, 1 effect_radius 20 tolerance 1e-2 }
+plane { y, -3 pigment { checker Red Blue } }
+sphere { <3, 0, 2>, 1 pigment { Green } finish { reflection 0.5 } }
+light_source { <10, 20, -20> White }
+"""
+SKY = "sky_sphere { pigment { granite color_map { [0 rgb 0] [1 rgb 1] } } }\n"
+
+
+def scene(folder, frames=2, width=100, height=150, extra="", ini=""):
+    """A small film of a black hole: film.ini, film.pov and an include in a folder. Returns the .ini."""
+    os.makedirs(folder + "/parts", exist_ok=True)
+    for name, text in (("film.pov", SCENE + extra), ("parts/sky.inc", SKY)):
+        with open(folder + "/" + name, "w") as f:
+            f.write(text)
+    with open(folder + "/film.ini", "w") as f:
+        f.write("Input_File_Name=film.pov\nInitial_Frame=1\nFinal_Frame=%d\nWidth=%d\nHeight=%d\nBits_Per_Color=16\nAntialias=On\n%s\n"
+                % (frames, width, height, ini))
+    return folder + "/film.ini"
+
+
+def include_folder():
+    """POV-Ray's own includes in the build tree, by which the reference finds colors.inc."""
+    return os.path.normpath(BIN + "/../../upstream/tree/distribution/include")
+
+
+def povray(ini, folder, *words):
+    """One povray, whole frames: the reference."""
+    empty = WORK + "/empty.ini"
+    with open(empty, "w") as f:
+        f.write("Verbose=Off\n")
+    done = subprocess.run([BIN + "/povray", ini, "+L" + include_folder(), "-D", "+WT2", *words], cwd=folder, capture_output=True, text=True,
+                          env=dict(ENV, POVINI=empty))
+    assert done.returncode == 0, done.stderr[-2000:]
+
+
+def pixels(name):
+    """Width, height, depth, colour type and the unfiltered rows of a PNG, by its definition (ISO/IEC 15948)."""
+    data = open(name, "rb").read()
+    assert data[:8] == b"\x89PNG\r\n\x1a\n", name
+    at, packed, head = 8, b"", None
+    while at < len(data):
+        size, kind = struct.unpack(">I4s", data[at:at + 8])
+        body = data[at + 8:at + 8 + size]
+        if kind == b"IHDR":
+            head = struct.unpack(">IIBB", body[:10])
+        elif kind == b"IDAT":
+            packed += body
+        at += 12 + size
+    width, height, depth, colour = head
+    step = {0: 1, 2: 3, 4: 2, 6: 4}[colour] * depth // 8
+    raw, rows, last = zlib.decompress(packed), [], bytes(width * step)
+    for y in range(height):
+        line = bytearray(raw[y * (width * step + 1):(y + 1) * (width * step + 1)])
+        how = line.pop(0)
+        for x in range(len(line)):
+            a = line[x - step] if x >= step else 0
+            b, c = last[x], last[x - step] if x >= step else 0
+            p = a + b - c
+            near = a if abs(p - a) <= abs(p - b) and abs(p - a) <= abs(p - c) else b if abs(p - b) <= abs(p - c) else c
+            line[x] = (line[x] + (0, a, b, (a + b) // 2, near)[how]) & 255
+        last = bytes(line)
+        rows.append(last)
+    return head, b"".join(rows)
+
+
+def same(a, b):
+    """That two pictures have the same pixels; says how many differ."""
+    (ha, pa), (hb, pb) = pixels(a), pixels(b)
+    assert ha == hb, "%s is %s, %s is %s" % (a, ha, b, hb)
+    differ = sum(x != y for x, y in zip(pa, pb))
+    assert differ == 0, "%d of %d bytes differ between %s and %s" % (differ, len(pa), a, b)
+
+
+def start(program, *words, log):
+    p = subprocess.Popen([BIN + "/" + program, *words], env=ENV, stdout=open(log, "a"), stderr=subprocess.STDOUT, start_new_session=True)
+    running.append(p)
+    return p
+
+
+class Server:
+    """bhfarm-server on a free port of the loopback; `again` starts it over on the same port and spool."""
+    def __init__(self, *words, spool=None):
+        self.spool = spool or tempfile.mkdtemp(dir=WORK)
+        self.words, self.port = words, 0
+        self.log = self.spool + ".log"
+        self.again()
+
+    def again(self):
+        file = self.spool + "/url"
+        if os.path.exists(file):
+            os.remove(file)
+        self.process = start("bhfarm-server", "--listen", "127.0.0.1:%d" % self.port, "--spool", self.spool, *self.words, log=self.log)
+        wait(lambda: os.path.exists(file) and open(file).read().strip(), "the server to start", self.process, self.log)
+        self.url = open(file).read().strip()
+        self.port = int(self.url.rsplit(":", 1)[1])
+
+    def worker(self, *words, name="worker"):
+        return start("bhfarm-worker", "--server", self.url, "--slots", "1", "--name", name, "--nice", "0", "--cache",
+                     WORK + "/cache-" + name, *words, log=WORK + "/" + name + ".log")
+
+    def ask(self, path, body=None, method=None, token=None, raw=None):
+        """Status and JSON (or bytes) of an answer."""
+        data = raw if raw is not None else json.dumps(body).encode() if body is not None else None
+        request = urllib.request.Request(self.url + path, data=data, method=method)
+        if token:
+            request.add_header("Authorization", "Bearer " + token)
+        try:
+            with urllib.request.urlopen(request, timeout=60) as answer:
+                status, got = answer.status, answer.read()
+        except urllib.error.HTTPError as e:
+            status, got = e.code, e.read()
+        try:
+            return status, json.loads(got) if got else None
+        except ValueError:
+            return status, got
+
+    def job(self, number):
+        return self.ask("/v1/jobs/%d" % number)[1]
+
+
+def bhfarm(*words, server=None, cwd=None, good=True):
+    if server:
+        words = (words[0], "--server", server.url, *words[1:])
+    done = subprocess.run([BIN + "/bhfarm", *words], env=ENV, cwd=cwd, capture_output=True, text=True)
+    assert not good or done.returncode == 0, "bhfarm %s: %s" % (" ".join(words), done.stderr)
+    return done
+
+
+def wait(condition, what, process=None, log=None, seconds=120):
+    until = time.monotonic() + seconds
+    while not condition():
+        if process and process.poll() is not None or time.monotonic() > until:
+            sys.exit("waited in vain for %s\n%s" % (what, open(log).read()[-3000:] if log else ""))
+        time.sleep(0.05)

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: AGPL-3.0-or-later
+"""bhfarm render: a film on one machine; Ctrl-C and the same command goes on where it was; bad input gets one line and leaves nothing."""
+import os
+import signal
+import subprocess
+import time
+
+from farm import BIN, ENV, WORK, bhfarm, povray, same, scene, wait
+
+folder = WORK + "/scene"
+ini = scene(folder, frames=3)
+os.makedirs(WORK + "/reference")
+povray(ini, folder, "+O" + WORK + "/reference/film")
+state = ENV["HOME"] + "/.local/state/bhfarm/render"
+
+process = subprocess.Popen([BIN + "/bhfarm", "render", "film.ini", "--slots", "1", "--strips", "5"], cwd=folder, env=ENV, stderr=subprocess.PIPE, text=True)
+
+
+def settled():
+    for job in os.listdir(state) if os.path.isdir(state) else []:
+        strips = state + "/" + job + "/spool/jobs/1/strips"
+        if os.path.isdir(strips) and len(os.listdir(strips)) >= 3:
+            return True
+    return False
+
+
+wait(settled, "three strips", process)
+process.send_signal(signal.SIGINT)
+said = process.communicate(timeout=30)[1]
+assert process.returncode == 130 and "the same command goes on" in said, (process.returncode, said)
+assert not os.path.exists(folder + "/film1.png")
+time.sleep(0.3)
+done = bhfarm("render", "film.ini", "--slots", "1", "--strips", "5", cwd=folder)
+assert "going on where it was" in done.stderr, done.stderr
+assert [os.path.basename(f) for f in done.stdout.split()] == ["film1.png", "film2.png", "film3.png", "film.mp4"], done.stdout
+for frame in (1, 2, 3):
+    same("%s/film%d.png" % (folder, frame), "%s/reference/film%d.png" % (WORK, frame))
+assert os.listdir(state) == [], "left behind: %s" % os.listdir(state)
+probe = subprocess.run(["ffmpeg", "-i", folder + "/film.mp4", "-f", "null", "-"], capture_output=True, text=True).stderr
+assert "h264" in probe and "100x150" in probe and "frame=    3" in probe, probe
+
+
+def says(words, text):
+    """One line that holds the text, and a code that is not zero."""
+    bad = bhfarm("render", *words, cwd=folder, good=False)
+    lines = bad.stderr.strip().split("\n")
+    assert bad.returncode != 0 and len(lines) == 1 and text in lines[0], (words, bad.returncode, bad.stderr)
+
+
+says(["nosuch.pov"], "there is no scene nosuch.pov")
+says(["film.ini", "--frames", "3-2"], "the last of --frames is '2'")
+says(["film.ini", "--strips", "150"], "a strip has at least 32 rows")
+says(["film.ini", "Final_Frame=0"], "Final_Frame is 0, below Initial_Frame 1")
+says(["film.ini", "+SR10"], "Start_Row does not work in a farm")
+says(["film.ini", "+FT"], "Output_File_Type is 'T'")
+says(["film.ini", "--nonsense"], "no option --nonsense")
+says(["film.ini", "+O/nosuch/x"], "there is no folder /nosuch")
+with open(folder + "/parts/sky.inc", "w") as f:
+    f.write('#include "missing.inc"\n')
+says(["film.ini"], "Cannot open include file missing.inc")
+assert os.listdir(state) == []
+print("stopped, went on, the same pixels; bad input is told")
