@@ -80,6 +80,7 @@ bool Path::trace(const Settings& settings) {
 		}
 		nodes_.push_back(next);
 	}
+	exhausted_ = true;
 	return false;
 }
 
@@ -119,7 +120,7 @@ bool Path::trace_exactly(const Settings& settings) {
 bool Path::solve(const Vec3& x, const Vec3& d, const Settings& settings) {
 	orbit_ = Orbit(x, d);
 	inside_ = orbit_.r <= 1;
-	nudged_ = false;
+	nudged_ = exhausted_ = false;
 	exact_.reset();
 	if (settings.method == Method::exact) {
 		exact_.emplace(x, d);
@@ -135,7 +136,7 @@ bool Path::solve(const Vec3& x, const Vec3& d, const Settings& settings) {
 	// followed instead. Nothing else is promised within 0.1 % of b_c, and no ray is lost.
 	const Orbit exact = orbit_;
 	const double side = outcome_ == Outcome::escaped ? 1 : -1;
-	for (double nudge = 1e-13; nudge < 2e-3; nudge *= 8) {
+	for (double nudge = 1e-13; nudge < 2e-3 && !exhausted_; nudge *= 8) {
 		// Turned outward a ray escapes, on either side of the photon sphere and for a tangential one too. By this angle b changes
 		// by about the share nudge of it, wherever the ray starts.
 		const double angle = side * nudge * exact.v.y / blackhole::length(exact.v);

@@ -77,6 +77,9 @@ public:
 	/// Whether the path had to be taken a hair to the side of b_c for the numbers to follow classify(): only
 	/// within 0.1 % of b_c, and for rays of next to no energy from deep inside the horizon.
 	bool nudged() const { return nudged_; }
+	/// Whether solve() returned false because the steps allowed (200,000) ran out: the tolerance is more than the method can do.
+	/// No ray does that within the bounds of Settings (docs/stability.md).
+	bool exhausted() const { return exhausted_; }
 
 private:
 	bool trace(const Settings& settings);
@@ -87,7 +90,7 @@ private:
 	std::vector<Node> nodes_;
 	std::optional<Exact_Orbit> exact_; // only for Method::exact, and not for radial rays
 	Outcome outcome_ = Outcome::escaped;
-	bool inside_ = false, nudged_ = false;
+	bool inside_ = false, nudged_ = false, exhausted_ = false;
 	double emerged_ = 0;
 };
 

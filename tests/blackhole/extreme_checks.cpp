@@ -25,14 +25,12 @@ double step_bound(const Path& path, const Settings& settings) {
 	const double u = std::max(1.0, largest_u(path)), frequency = o.k * std::sqrt(1 + 3 * u);
 	// rk4.cpp's h = 1 / (k sqrt(1 + 3u) (1/0.55 + rate^(1/4)) + 1). u <= 1 outside the horizon; inside, rate grows by a factor
 	// of at most 41 u^3 and u falls from its start. The nodes of the closed form (path.cpp) are 1 / (4 k sqrt(1 + 3u) + 1) apart;
-	// near b_c rk4's come instead.
+	// where it is of no use rk4's come instead.
 	double rate = 0.04 / (settings.tolerance * conditioning(o.h));
 	if (u > 1)
 		rate *= 41 * u * u * u;
 	double inverse = frequency * (1 / 0.55 + std::sqrt(std::sqrt(rate))) + 1;
-	if (settings.method == Method::exact && path.swept() < 9 && std::fabs(o.h / critical_b - 1) > 1e-3)
-		inverse = 4 * frequency + 1;
-	else if (settings.method == Method::exact)
+	if (settings.method == Method::exact)
 		inverse = std::max(inverse, 4 * frequency + 1);
 	// dopri5 decides on the way: nothing is proven of it but path.cpp's limit. It is seen to take fewer steps than rk4, or
 	// than twelve more, for its first is short.
@@ -87,7 +85,7 @@ struct Check {
 	const double R = ray.settings.effect_radius, tolerance = ray.settings.tolerance;
 	Launch launch{ray.x, ray.d};
 	Escape out{};
-	bool escapes = false, near = false, known = false, fell_back = false;
+	bool escapes = false, near = false, lost = false, known = false, fell_back = false;
 
 	Check(const Ray& r, Path& p, Figures& figures) : ray(r), path(p), f(figures) {}
 	std::string outcome();
@@ -130,9 +128,9 @@ std::string Check::solution() {
 	if ((path.outcome() == Outcome::escaped) != escapes)
 		return "the path's outcome is not classify()'s";
 	const Orbit& orbit = path.orbit();
-	// Within a thousandth of Rs of the singularity, the energy, 1, is what remains of |v|^2 = 1 + b^2 u^3: nothing is promised
+	// Within a hundredth of Rs of the singularity, the energy, 1, is what remains of |v|^2 = 1 + b^2 u^3: nothing is promised
 	// where more than eight digits go.
-	const bool lost = launch.u > 1000 && orbit.h * orbit.h * launch.u * launch.u * launch.u > 1e8;
+	lost = launch.u > 100 && orbit.h * orbit.h * launch.u * launch.u * launch.u > 1e8;
 	near = lost || std::fabs(orbit.h / critical_b - 1) < 1e-3;
 	f.captured += !escapes;
 	f.near += near;
@@ -174,7 +172,7 @@ std::string Check::ends() {
 		return words("ends at radius %.17g", length(end));
 	if (path.started_inside() && escapes && !(path.emerged() > 0 || path.nodes()[0].u == 1))
 		return "escaped from inside and never emerged";
-	if (!near) {
+	if (!path.nudged() && !lost) {
 		f.drift = std::max(f.drift, drift / tolerance);
 		if (!(drift <= tolerance))
 			return words("drift %g", drift);

@@ -115,16 +115,17 @@ TEST(Extremes_Found, StaysMended) {
 			{929265146191.65271, 0.1, Method::rk4}},                // and its end was far off
 		{{1e12, 0, 0}, {-1, 5.83e-4, 0}, {1e12, 0.1, Method::rk4}}, // likewise
 		{{983627998785.0105, 0, 0}, {-0x1.fff18982a4065p-1, 0x1.e6c571c22dff8p-7, 0},
-			{983627998785.0105, 1e-4, Method::rk4}},                                      // and
-		{{1e-6 + 1e-7, 0, 0}, {1, 0, 0}, {R, t, Method::rk4}},                            // a million steps
-		{{2.64e-06, 0, 0}, {1, 1.9e-17, 0}, {1.5000001, 0.1, Method::dopri5}},            // likewise
-		{{1e12, 0, 0}, {-1, 3e-12, 0}, {1e12, 1e-9, Method::rk4}},                        // b off by 2e-8, a thousand tolerances
-		{{1.5 + 3 * ulp, 0, 0}, {-1e-17, 1, 0}, {R, t, Method::exact}},                   // u below 0
-		{{1.5, 0, 0}, {4.9e-324, 1, 0}, {1.5 + ulp, 0.1, Method::exact}},                 // likewise
-		{{1.5, 0, 0}, {0, 1, 0}, {R, t, Method::exact}},                                  // never got to the horizon
-		{{198.028401188507, 0, 0}, {0.99, 0.1, 0}, {198.028401188507, t, Method::exact}}, // did not end on the sphere
-		{{1 + ulp, 0, 0}, {1, 1e-17, 0}, {1e6, 3e-6, Method::exact}},                     // u below 0
-		{{1.000000399, 0, 0}, {-1, 2.7e-17, 1e-9}, {1.5 + ulp, 1e-4, Method::exact}},     // energy lost
+			{983627998785.0105, 1e-4, Method::rk4}},                                         // and
+		{{1e-6 + 1e-7, 0, 0}, {1, 0, 0}, {R, t, Method::rk4}},                               // a million steps
+		{{2.64e-06, 0, 0}, {1, 1.9e-17, 0}, {1.5000001, 0.1, Method::dopri5}},               // likewise
+		{{6e11, -5e11, 6e11}, {-6e11 + 1.92, 5e11 + 2.3, -6e11}, {1e12, 1e-9, Method::rk4}}, // b off by 2e-8
+		{{1.5 + 3 * ulp, 0, 0}, {-1e-17, 1, 0}, {R, t, Method::exact}},                      // u below 0
+		{{1.5, 0, 0}, {4.9e-324, 1, 0}, {1.5 + ulp, 0.1, Method::exact}},                    // likewise
+		{{1.5, 0, 0}, {0, 1, 0}, {R, t, Method::exact}},                                     // never got to the horizon
+		{{198.028401188507, 0, 0}, {0.99, 0.1, 0}, {198.028401188507, t, Method::exact}},    // did not end on the sphere
+		{{0x1.22a6abf990559p-1, 0x1.89c3a328cf893p-1, 0x1.2cc5944a6a61fp-2},
+			{-0x1.bcf5348e9e96cp-2, -0x1.2d682a5fe5914p-1, -0x1.cc73a06d0ed8ep-3},
+			{1.5 + ulp, 1e-4, Method::exact}}, // energy lost
 	};
 	Path path;
 	Figures figures;

@@ -234,3 +234,16 @@ TEST(Chords, ARampStartsShort) {
 	Chords(path, 1e-3, true).next(ramp);
 	EXPECT_LT(length(ramp.to - ramp.from), length(plain.to - plain.from) / 50);
 }
+
+// What no method can do is said, soon, and not called something else.
+TEST(Path, SaysThatItsStepsRanOut) {
+	Path path;
+	for (Method method : {Method::rk4, Method::dopri5}) {
+		EXPECT_FALSE(path.solve({20, 0, 0}, {-1, 0.2, 0}, {1000, 1e-24, method}));
+		EXPECT_TRUE(path.exhausted());
+		EXPECT_FALSE(path.nudged());
+		EXPECT_TRUE(path.solve({20, 0, 0}, {-1, 0.2, 0}, {1000, 1e-9, method}));
+		EXPECT_FALSE(path.exhausted());
+	}
+	EXPECT_TRUE(path.solve({20, 0, 0}, {-1, 0.2, 0}, {1000, 1e-24, Method::exact}));
+}

@@ -23,6 +23,8 @@ struct Folders {
 	}
 } folders;
 
+} // namespace
+
 Picture read_ppm(const std::string& file) {
 	Picture p;
 	std::ifstream in(file, std::ios::binary);
@@ -47,8 +49,6 @@ Picture read_ppm(const std::string& file) {
 		p.samples[i] = std::uint16_t((std::uint8_t(data[2 * i]) << 8) | std::uint8_t(data[2 * i + 1]));
 	return p;
 }
-
-} // namespace
 
 std::string number(double value) {
 	char text[40];

@@ -28,6 +28,9 @@ struct Rendering {
 /// antialiasing; words are appended to the command line. The run has a folder of its own.
 Rendering povray(const std::string& scene, int width, int height, const std::string& words = "");
 
+/// A picture as POV-Ray writes it with +FP16; empty if it is none.
+Picture read_ppm(const std::string& file);
+
 /// Number with enough digits to be read back as the same double.
 std::string number(double value);
 

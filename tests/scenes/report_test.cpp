@@ -61,6 +61,9 @@ TEST(Report, Statistics) {
 	EXPECT_EQ(value(sky.text, "Captured:"), black);
 	EXPECT_GT(black, 0);
 	EXPECT_EQ(value(sky.text, "Chords:"), 0) << "only the sky: no chords";
+	EXPECT_EQ(value(sky.text, "Closed Form Alone:"), 32 * 24);
+	EXPECT_EQ(value(sky.text, "Paths Followed:"), 0);
+	EXPECT_EQ(value(sky.text, "Steps:"), 0);
 
 	const Rendering full = povray(camera + objects + "blackhole { 0, 1 }", 32, 24);
 	EXPECT_EQ(value(full.text, "Chords Tested:") + value(full.text, "Skipped:"), value(full.text, "Chords:"));
@@ -68,8 +71,54 @@ TEST(Report, Statistics) {
 	EXPECT_NEAR(value(full.text, "Per Ray:"), value(full.text, "Chords:") / value(full.text, "Bent Rays:"), 0.006);
 	EXPECT_GE(value(full.text, "Per Ray:"), 1);
 	EXPECT_GT(value(full.text, "Most Turns:"), 0.4);
+	EXPECT_EQ(value(full.text, "Paths Followed:"), value(full.text, "Bent Rays:"));
+	EXPECT_EQ(value(full.text, "Closed Form Alone:"), 0);
+	EXPECT_GE(value(full.text, "Object Tests:"), value(full.text, "Chords Tested:"));
+	EXPECT_NEAR(value(full.text, "Per Path:"), value(full.text, "Steps:") / value(full.text, "Paths Followed:"), 0.006);
+	EXPECT_EQ(full.text.find("Through Media, Fog:"), std::string::npos);
+
+	// A finer tolerance takes more steps, exact ones as many as ever; fog takes all rays' chords one by one.
+	const auto with = [&](const char* words) { return povray(camera + objects + "blackhole { 0, 1 " + words, 32, 24).text; };
+	EXPECT_GT(value(with("tolerance 1e-6 }"), "Steps:"), 2 * value(full.text, "Steps:"));
+	EXPECT_EQ(
+		value(with("tolerance 1e-6 method \"exact\" }"), "Steps:"), value(with("tolerance 1e-3 method \"exact\" }"), "Steps:"));
+	const std::string fog = with("} fog { distance 100 rgb 0.5 }");
+	EXPECT_EQ(value(fog, "Through Media, Fog:"), value(fog, "Paths Followed:"));
 
 	EXPECT_EQ(povray(camera + objects, 16, 12).text.find("Bent Rays"), std::string::npos) << "no hole: not a word";
+}
+
+// Two shells of objects: what is tested in each adds up, and every hit is of a chord tested.
+TEST(Report, StatisticsByShell) {
+	const Rendering run = povray(camera + "sphere { <3, 0, 3>, 1 pigment { rgb 1 } } sphere { <-9, 0, 2>, 1 pigment { rgb 1 } } "
+										  "blackhole { 0, 1 effect_radius 100 }",
+		64, 48, "+BM2");
+	std::vector<double> tested;
+	for (std::size_t at = 0; (at = run.text.find("Tested at Radii:", at)) != std::string::npos; at++)
+		tested.push_back(value(run.text.substr(at), "Tested at Radii:"));
+	ASSERT_EQ(tested.size(), 2u) << run.text;
+	EXPECT_GT(tested[0], 0);
+	EXPECT_GT(tested[1], 0);
+	EXPECT_EQ(tested[0] + tested[1], value(run.text, "Chords Tested:"));
+	EXPECT_NEAR(value(run.text.substr(run.text.find("Tested at Radii:")), "From"), std::sqrt(18.0) - 1, 0.7) << "by its box";
+	EXPECT_GT(value(run.text, "Hits:"), 0);
+	EXPECT_LE(value(run.text, "Hits:"), value(run.text, "Chords Tested:"));
+}
+
+// A surface whose normals are no numbers: its reflections are black, and that is said.
+TEST(Report, RaysWithoutADirectionAreNamed) {
+	const Rendering run =
+		povray(camera + "plane { y, -4 pigment { rgb 1 } normal { function { sqrt(-1 - x*x) } 1 } finish { ambient "
+						"0 reflection 1 } } blackhole { 0, 1 }",
+			32, 24);
+	const std::string text = joined(run.text);
+	const std::size_t at = text.find("ray(s) had no direction that is a number; they are black");
+	ASSERT_NE(at, std::string::npos) << run.text;
+	int black = 0;
+	for (int y = 0; y < 24; y++)
+		for (int x = 0; x < 32; x++)
+			black += run.picture.black(x, y);
+	EXPECT_EQ(value(text, "Shutdown Warning:") + value(text, "Captured:"), black);
 }
 
 TEST(Report, NoCameraRayStartsInAHorizonUnnoticed) {

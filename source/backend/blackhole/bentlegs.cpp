@@ -72,6 +72,7 @@ bool Bent_Path::Leave(const Blackhole& hole, VECTOR from, Vec3& direction)
 	blackhole::Escape exit;
 	s.moved = true;
 	s.captured = !escape(hole.To_Hole(from), direction, hole.Settings().effect_radius, exit);
+	bent->counts.Closed++;
 	bent->counts.Captured += s.captured;
 	if(s.captured)
 		return false;
@@ -95,6 +96,13 @@ bool Bent_Path::Through(size_t index, VECTOR from, Vec3& direction, Intersection
 	// where its length is not wanted either, by something beyond the sphere that fades, or radiosity.
 	const bool chords = !shells.Empty() || s.volume || (bent->recorder != NULL) || (s.budget < BOUND_HUGE);
 	counts.Entered++;
+	if(!(dot(direction, direction) > 0.5)) // not a number
+	{
+		counts.Undirected++;
+		s.captured = true;
+		isect.Depth = 0.0;
+		return false;
+	}
 	if(!chords && !bent->holes.Far_Objects())
 		return Leave(hole, from, direction);
 	blackhole::Path& path = bent->path;
@@ -103,11 +111,19 @@ bool Bent_Path::Through(size_t index, VECTOR from, Vec3& direction, Intersection
 
 	counts.Captured += captured;
 	counts.Nudged += path.nudged();
-	counts.Failed += !solved;
+	counts.Paths++;
+	counts.Steps += path.nodes().size() - 1;
+	counts.Most_Steps = max(counts.Most_Steps, (unsigned int)(path.nodes().size() - 1));
+	counts.Filled += s.volume;
+	(path.exhausted() ? counts.Exhausted : counts.Failed) += !solved;
 	counts.Most_Swept = max(counts.Most_Swept, path.swept());
-	s.drift = max(s.drift, path.drift());
+	const DBL drift = path.drift();
+	s.drift = max(s.drift, drift);
 	if(!path.nudged())
-		counts.Drift = max(counts.Drift, path.drift());
+	{
+		counts.Drift = max(counts.Drift, drift);
+		counts.Drifted += (drift > hole.Tolerance);
+	}
 
 	if(chords)
 	{

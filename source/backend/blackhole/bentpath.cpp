@@ -178,6 +178,7 @@ bool Bent_Path::Find_Intersection(Intersection& isect, const RayObjectCondition&
 		left = next;
 	}
 	s.captured = true;
+	bent->counts.Trapped++;
 	return End_With("horizon", false);
 }
 

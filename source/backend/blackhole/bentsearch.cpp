@@ -100,7 +100,10 @@ bool Bent_Path::Hit_Chord(const Chord_Run::Chord& chord, const Vec3& direction, 
 	{
 		const ObjectPtr object = bent->holes.Tree().Object(objects[i]);
 		Intersection here;
-		if(pre(s.chord, object, 0.0) && bent->trace.FindIntersection(object, here, s.chord, condition, isect.Depth) && (here.Depth < isect.Depth))
+		if(!pre(s.chord, object, 0.0))
+			continue;
+		bent->counts.Object_Tests++;
+		if(bent->trace.FindIntersection(object, here, s.chord, condition, isect.Depth) && (here.Depth < isect.Depth))
 		{
 			isect = here;
 			hit = true;
@@ -123,6 +126,8 @@ bool Bent_Path::Along_Chord(const Chord_Run::Chord& chord, const std::vector<uns
 	counts.Chords++;
 	s.chords++;
 	(objects.empty() ? counts.Skipped : counts.Tested)++;
+	if(!objects.empty())
+		counts.Add_Tested(index, bent->holes.Shells_Of(index), chord.nearest, chord.farthest);
 	if(chord_length == 0.0)
 		return false;
 	along = (1.0 / chord_length) * along;
@@ -131,6 +136,7 @@ bool Bent_Path::Along_Chord(const Chord_Run::Chord& chord, const std::vector<uns
 	Record(chord.from, found ? isect.IPoint : chord.to, index, !objects.empty());
 	if(found)
 	{
+		counts.Hits++;
 		// The quadratic through both tangents whose mean is the chord.
 		const DBL t = min(1.0, isect.Depth / chord_length);
 		const Vec3 from = bent->path.tangent(chord.at_from), to = bent->path.tangent(chord.at_to);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -21,27 +22,6 @@
 
 namespace pov
 {
-
-Blackhole_Counts::Blackhole_Counts() :
-	Entered(0), Captured(0), Chords(0), Tested(0), Skipped(0), Nudged(0), Failed(0), Origins_Inside(0),
-	Most_Chords(0), Most_Swept(0.0), Drift(0.0)
-{
-}
-
-void Blackhole_Counts::Add(const Blackhole_Counts& other)
-{
-	Entered += other.Entered;
-	Captured += other.Captured;
-	Chords += other.Chords;
-	Tested += other.Tested;
-	Skipped += other.Skipped;
-	Nudged += other.Nudged;
-	Failed += other.Failed;
-	Origins_Inside += other.Origins_Inside;
-	Most_Chords = max(Most_Chords, other.Most_Chords);
-	Most_Swept = max(Most_Swept, other.Most_Swept);
-	Drift = max(Drift, other.Drift);
-}
 
 Blackholes::Blackholes(POVMS_Object& options) :
 	enabled(options.TryGetBool(kPOVAttrib_Blackhole, true)),
@@ -126,6 +106,11 @@ std::string Blackholes::Prepare(const SceneData& scene, TraceThreadData *thread,
 		// POV-Ray's own constants, MIN_ISECT_DEPTH and MAX_DISTANCE, are lengths: 1e-4 and 1e7.
 		if((reached > 0) && ((hole.Radius < 1e-3) || (hole.Radius > 1e5)))
 			messages.Warning(1, "POV-Ray loses objects nearer than 1e-4 and farther than 1e7 units; around a black hole with a Schwarzschild radius of %g that shows. Scale the scene so that it is between 1e-3 and 1e5.", hole.Radius);
+		// Chords' ends are scene coordinates: their last digits must be small beside the fifth of the tolerance that chords leave.
+		const DBL digits = DBL_EPSILON / 2.0 * max(fabs(hole.Center[X]), max(fabs(hole.Center[Y]), fabs(hole.Center[Z]))) / hole.Radius;
+		if((reached > 0) && (hole.Tolerance < 5.0 * digits))
+			messages.Warning(1, "The black hole at <%g,%g,%g> is so far from the origin that coordinates are good to %.2g of its Schwarzschild radii: no method keeps tolerance %g there; %.1g can be kept. Move the scene towards the origin, or make it larger.",
+			                 hole.Center[X], hole.Center[Y], hole.Center[Z], digits, hole.Tolerance, 5.0 * digits);
 		if(straddling > 0)
 			messages.Warning(1, "%u object(s) reach into the horizon of the black hole at <%g,%g,%g> and exist outside it only; first: %s.",
 			                 straddling, hole.Center[X], hole.Center[Y], hole.Center[Z], first.c_str());
@@ -161,32 +146,12 @@ void Blackholes::Get_Statistics(POVMS_Object& stats)
 {
 	if(holes.empty())
 		return;
-	const Blackhole_Counts c = Sum();
-	const double entered = max(1.0, double(c.Entered));
-	char text[1024];
-	snprintf(text, sizeof text,
-	         "Bent Rays:          %15.0f   Captured:        %15.0f\n"
-	         "Chords:             %15.0f   Per Ray:         %15.2f (most %u)\n"
-	         "Chords Tested:      %15.0f   Skipped:         %15.0f\n"
-	         "Most Turns:         %15.2f   Largest Drift:   %15.2g\n",
-	         double(c.Entered), double(c.Captured), double(c.Chords), double(c.Chords) / entered, c.Most_Chords,
-	         double(c.Tested), double(c.Skipped), c.Most_Swept / (2.0 * M_PI), c.Drift);
-	std::string lines(text);
-	if(c.Nudged > 0)
-	{
-		snprintf(text, sizeof text, "Beside Critical b:  %15.0f\n", double(c.Nudged));
-		lines += text;
-	}
-	stats.SetString(kPOVAttrib_BlackholeStatistics, lines.c_str());
+	stats.SetString(kPOVAttrib_BlackholeStatistics, Sum().Text(holes, shells).c_str());
 }
 
 void Blackholes::Finish(MessageFactory& messages)
 {
-	const Blackhole_Counts c = Sum();
-	if(c.Failed > 0)
-		messages.Warning(1, "%.0f bent ray(s) could not be followed to the end (their b is within rounding of the critical one); they show the sky in their last direction.", double(c.Failed));
-	if(c.Origins_Inside > 0)
-		messages.Warning(1, "%.0f camera ray(s) started at or inside the horizon, where no static observer is; they are black. camera \"falling\" can look from there.", double(c.Origins_Inside));
+	Sum().Warn(messages);
 	if(paths != NULL)
 		paths->Write(*this, messages);
 }

@@ -13,6 +13,7 @@
 #include "base/povmscpp.h"
 #include "backend/blackhole/blackhole.h"
 #include "backend/blackhole/chordtree.h"
+#include "backend/blackhole/counts.h"
 #include "backend/blackhole/reach.h"
 
 namespace pov
@@ -22,18 +23,6 @@ class MessageFactory;
 class Ray_Paths;
 class SceneData;
 class TraceThreadData;
-
-/// One thread's counts, summed when the picture is done.
-struct Blackhole_Counts
-{
-	POV_ULONG Entered, Captured, Chords, Tested, Skipped, Nudged, Failed, Origins_Inside;
-	unsigned int Most_Chords;
-	DBL Most_Swept; ///< radians
-	DBL Drift;
-
-	Blackhole_Counts();
-	void Add(const Blackhole_Counts& other);
-};
 
 class Blackholes
 {

@@ -175,6 +175,8 @@ void Parser::Check_Blackhole(const Blackhole& hole)
 		Error("A blackhole is round: only moves, rotations and uniform scales can transform it.");
 	if(!((hole.Radius >= 1e-9) && (hole.Radius <= 1e9)))
 		Error("blackhole: the Schwarzschild radius must be between 1e-9 and 1e9; it is %g.", hole.Radius);
+	if(!(hole.Reach() <= 1e15 * hole.Radius))
+		Error("blackhole: effect_radius must be at most 1e15 times the Schwarzschild radius (%g); it is %g.", 1e15 * hole.Radius, hole.Reach());
 }
 
 void Parser::Check_No_Blackhole(ObjectPtr object, const char *where)
