@@ -31,6 +31,9 @@ FEATURES = {
 	"media2": ("", MEDIA % "method 2 samples 6 jitter 1", "-A", True),
 	"media3": ("", MEDIA % "method 3 samples 5 jitter 0.8 aa_level 3 aa_threshold 0.05", "-A", True),
 	"media-area": ("", AREA % "" + MEDIA % "method 1 intervals 2 samples 1, 2" + "sphere { <2, 3, -3>, 0.8 pigment { rgbf 0.9 } interior { media { method 1 intervals 1 absorption 0.5 density { granite } } } hollow }\n", "+A0.2 +AM2 +R1", True),
+	# A light blocked by a ball: where the ball is tried first, the jittered medium under it draws nothing, and later ones other numbers.
+	"shadow-cache": ("", "light_source { <-4, 20, -2>, 0.5 }\n" + AREA % "" + GROUND % "" + "sphere { <-4, 4, 0>, 2 pigment { rgb 1 } }\n" +
+		"box { <-5, -1.5, -2>, <-3.6, 0, 2> hollow pigment { rgbt 1 } interior { media { method 3 samples 3 jitter 1 absorption 0.5 density { granite scale 0.3 } } } }\n", "-A", True),
 	"subsurface": ("", "global_settings { mm_per_unit 20 subsurface { samples 8, 4 } }\n" + SUN + SKY + "default { finish { ambient 0.1 } }\n" +
 		"sphere { <-3, 0, 0>, 1.5 pigment { rgb 0.9 } finish { subsurface { translucency <0.4, 0.3, 0.2> } } interior { ior 1.4 } }\n" +
 		"box { <1.5, -2, -1>, <4, 1, 2> pigment { rgb 0.9 } finish { subsurface { translucency <0.2, 0.3, 0.5> } } interior { ior 1.3 } }\n", "-A", True),

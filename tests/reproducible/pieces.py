@@ -55,7 +55,7 @@ def different(program, scene, options, cuts, threads, on=True):
 		(cut, 1 + (i + len(cut)) % 2 if len(threads) > 1 else 1, a, b) for cut in cuts for i, (a, b) in enumerate(strips(CUTS[cut]))]
 	jobs = [(scene, words(options, n, a, b, on)) for _, n, a, b in pieces]
 	pictures = render(program, jobs)
-	if povray.failures:
+	if None in pictures:
 		return ["not rendered"]
 	whole = pictures[0]
 	expect(len(set(whole.pixels)) > 50, options, "shows next to nothing")
