@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -158,43 +159,44 @@ void expect_no_tear(const Jumps& j) {
 	EXPECT_GT(j.compared, steps / 2);
 }
 
-Ray from(double r, double a, double R, double tolerance) {
-	return {{r, 0, 0}, {std::cos(a), std::sin(a), 0}, {R, tolerance, Method::rk4}};
+Ray from(double r, double a, double R, const Settings& s) {
+	return {{r, 0, 0}, {std::cos(a), std::sin(a), 0}, {R, s.tolerance, s.method}};
 }
 double angle(double r, double b) { return std::acos(-1.0) - std::asin(b / r / std::sqrt(1 + b * b / (r * r * r))); }
 
 } // namespace
 
-class Continuity : public testing::TestWithParam<double> {};
+class Continuity : public testing::TestWithParam<std::tuple<Method, double>> {};
 
 TEST_P(Continuity, OfImpactParameters) {
-	const double tolerance = GetParam();
+	const Settings settings{0, std::get<1>(GetParam()), std::get<0>(GetParam())};
 	for (double r : {1000.0, 30.0})
 		expect_no_tear(
-			sweep("b from 2.602 to 22", [=](double t) { return from(r, angle(r, 2.602 + 19.4 * t * t), 1000, tolerance); }));
-	expect_no_tear(sweep("b from 0 to 2.59", [=](double t) { return from(30, angle(30, 2.59 * t), 1000, tolerance); }));
+			sweep("b from 2.602 to 22", [=](double t) { return from(r, angle(r, 2.602 + 19.4 * t * t), 1000, settings); }));
+	expect_no_tear(sweep("b from 0 to 2.59", [=](double t) { return from(30, angle(30, 2.59 * t), 1000, settings); }));
 }
 
 TEST_P(Continuity, OfTheStartRadius) {
-	const double tolerance = GetParam();
+	const Settings settings{0, std::get<1>(GetParam()), std::get<0>(GetParam())};
 	for (double a : {0.3, 1.5, 2.4})
-		expect_no_tear(sweep("r from 1.02 to 41", [=](double t) { return from(1.02 + 40 * t * t, a, 1000, tolerance); }));
+		expect_no_tear(sweep("r from 1.02 to 41", [=](double t) { return from(1.02 + 40 * t * t, a, 1000, settings); }));
 }
 
 TEST_P(Continuity, OfTheCamerasAngle) {
-	const double tolerance = GetParam();
+	const Settings settings{0, std::get<1>(GetParam()), std::get<0>(GetParam())};
 	for (double r : {1.2, 1.5, 4.0, 200.0})
-		expect_no_tear(sweep("all angles", [=](double t) { return from(r, std::acos(-1.0) * t, 1000, tolerance); }));
+		expect_no_tear(sweep("all angles", [=](double t) { return from(r, std::acos(-1.0) * t, 1000, settings); }));
 }
 
 TEST_P(Continuity, OfTheEffectRadius) {
-	const double tolerance = GetParam();
+	const Settings settings{0, std::get<1>(GetParam()), std::get<0>(GetParam())};
 	for (double a : {0.7, 2.2})
-		expect_no_tear(sweep("R from 4 to 1000", [=](double t) { return from(4, a, 4 * std::pow(250, t), tolerance); }));
+		expect_no_tear(sweep("R from 4 to 1000", [=](double t) { return from(4, a, 4 * std::pow(250, t), settings); }));
 	expect_no_tear(sweep("starts on it", [=](double t) {
 		const double R = 4 * std::pow(250, t);
-		return from(R, angle(R, 3.5), R, tolerance);
+		return from(R, angle(R, 3.5), R, settings);
 	}));
 }
 
-INSTANTIATE_TEST_SUITE_P(To, Continuity, testing::Values(0.1, 1e-2, 1e-4));
+INSTANTIATE_TEST_SUITE_P(To, Continuity,
+	testing::Combine(testing::Values(Method::rk4, Method::dopri5, Method::exact), testing::Values(0.1, 1e-2, 1e-4)));
