@@ -5,6 +5,8 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 using namespace blackhole;
 using namespace extremes;
 
@@ -133,4 +135,38 @@ TEST(Extremes_Found, StaysMended) {
 		ASSERT_TRUE(allowed(ray)) << ray.text();
 		EXPECT_EQ(check(ray, true, path, figures), "") << ray.text();
 	}
+}
+
+// The finest tolerance the scene language has, where it is hardest: just outside the 0.1 % band, from ever farther away.
+TEST(Extremes_Tolerance, TheFinestIsKeptByAllMethodsHoweverFar) {
+	for (const Method method : {Method::rk4, Method::dopri5, Method::exact})
+		for (const double R : {1.6, 10.0, 1e3, 1e6, 1e9, 1e12, 1e15}) {
+			std::mt19937_64 random(9);
+			std::uniform_real_distribution<double> u(0, 1);
+			std::normal_distribution<double> n;
+			double worst = 0;
+			std::size_t most = 0;
+			int rays = 0;
+			for (int i = 0; i < 200; i++) {
+				const double r = R * (1 - 1e-3 * u(random)), b = critical_b * (1 + 1.001e-3 * std::pow(100, u(random)));
+				const double sine = b / r / std::sqrt(1 + b * b / (r * r * r));
+				if (!(sine < 1))
+					continue;
+				const Vec3 e = unit({n(random), n(random), n(random)}), t = unit(cross(e, {n(random), n(random), n(random)}));
+				const Vec3 x = r * e, d = -std::sqrt(1 - sine * sine) * e + sine * t;
+				Path path;
+				Escape out;
+				ASSERT_TRUE(path.solve(x, d, {R, 1e-9, method}));
+				// From afar b's last digits may be in the band, or beyond it.
+				if (std::fabs(path.orbit().h / critical_b - 1) < 1e-3 || !escape(x, d, R, out))
+					continue;
+				rays++;
+				most = std::max(most, path.nodes().size());
+				worst = std::max({worst, length(path.end_tangent() - out.tangent), length(path.end() - R * out.at) / R});
+			}
+			std::printf("[ extremes ] %s, 1e-9, effect radius %g: off by %.4f of it at most (%d rays, %zu nodes)\n",
+				method_names[int(method)], R, worst / 1e-9, rays, most);
+			EXPECT_GT(rays, 30);
+			EXPECT_LT(worst, 1e-9);
+		}
 }
