@@ -19,7 +19,7 @@ QUANTUM = 2.7e-5  # 16-bit colours: half a step is 1.53e-5 in each component, at
 TOLERANCE = 1e-4  # sky.pov's, which we promise for every ray with x > 0.1 %
 GYOTO_TOLERANCE = 1e-9  # of its integrator: directions within 1e-6 of those at 1e-12 for x > 0.1 %
 # Our static frame has g(R) = 1 at the effect radius R (physics.md), which shows a static observer's picture enlarged
-# about the hole's centre by 1/sqrt(1 - Rs/R): 0.05 % at the default R = 1000 Rs. That moves a ray by 1/(2R) of its b,
+# about the hole's centre by 1/sqrt(1 - Rs/R): 0.05 % at R = 1000 Rs. That moves a ray by 1/(2R) of its b,
 # its direction by up to (1 + 1/x)/(2R), as deflection goes like -ln x. It must vanish where R is large, and where
 # GYOTO's screen is made 0.05 % smaller.
 

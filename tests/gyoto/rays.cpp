@@ -34,7 +34,7 @@ using namespace Gyoto;
 
 namespace {
 
-const double far = 2000;       // M: our default effect radius, 1000 Rs. Beyond it 1e-8 rad of bending is left at most.
+const double far = 2000;       // M: the effect radius compared with, 1000 Rs. Beyond it 1e-8 rad of bending is left at most.
 const double long_ago = -6000; // M: by then every photon that came from far away was beyond `far`.
 
 /// L/E over 3 sqrt(3) M, with GYOTO's metric.

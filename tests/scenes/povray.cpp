@@ -50,6 +50,14 @@ Picture read_ppm(const std::string& file) {
 	return p;
 }
 
+std::string joined(const std::string& text) {
+	std::string out;
+	for (char c : text)
+		if (c != '\n' && !(c == ' ' && !out.empty() && out.back() == ' '))
+			out += c;
+	return out;
+}
+
 std::string number(double value) {
 	char text[40];
 	std::snprintf(text, sizeof text, "%.17g", value);

@@ -31,6 +31,9 @@ Rendering povray(const std::string& scene, int width, int height, const std::str
 /// A picture as POV-Ray writes it with +FP16; empty if it is none.
 Picture read_ppm(const std::string& file);
 
+/// What was printed, without the console's line breaks.
+std::string joined(const std::string& text);
+
 /// Number with enough digits to be read back as the same double.
 std::string number(double value);
 

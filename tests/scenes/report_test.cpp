@@ -27,15 +27,6 @@ double value(const std::string& text, const std::string& label) {
 	return at == std::string::npos ? -1 : std::strtod(text.c_str() + at + label.size(), nullptr);
 }
 
-// Without the console's line breaks.
-std::string joined(const std::string& text) {
-	std::string out;
-	for (char c : text)
-		if (c != '\n' && !(c == ' ' && !out.empty() && out.back() == ' '))
-			out += c;
-	return out;
-}
-
 } // namespace
 
 TEST(Report, SaysWhatTheSceneRequires) {
@@ -77,11 +68,12 @@ TEST(Report, Statistics) {
 	EXPECT_NEAR(value(full.text, "Per Path:"), value(full.text, "Steps:") / value(full.text, "Paths Followed:"), 0.006);
 	EXPECT_EQ(full.text.find("Through Media, Fog:"), std::string::npos);
 
-	// A finer tolerance takes more steps, exact ones as many as ever; fog takes all rays' chords one by one.
+	// A finer tolerance takes more steps, exact ones as many as ever, but that mirrors are met a hair elsewhere; fog takes all
+	// rays' chords one by one.
 	const auto with = [&](const char* words) { return povray(camera + objects + "blackhole { 0, 1 " + words, 32, 24).text; };
 	EXPECT_GT(value(with("tolerance 1e-6 }"), "Steps:"), 2 * value(full.text, "Steps:"));
-	EXPECT_EQ(
-		value(with("tolerance 1e-6 method \"exact\" }"), "Steps:"), value(with("tolerance 1e-3 method \"exact\" }"), "Steps:"));
+	const double exact = value(with("tolerance 1e-3 method \"exact\" }"), "Steps:");
+	EXPECT_NEAR(value(with("tolerance 1e-6 method \"exact\" }"), "Steps:"), exact, 1e-3 * exact);
 	const std::string fog = with("} fog { distance 100 rgb 0.5 }");
 	EXPECT_EQ(value(fog, "Through Media, Fog:"), value(fog, "Paths Followed:"));
 

@@ -14,7 +14,8 @@ using namespace blackhole;
 
 namespace {
 
-constexpr double R = 1000;
+constexpr double R = 10000;   // the default
+constexpr double last = 1000; // no object here is farther; first_hit's steps grow with it
 const char* const painted = " Coordinates(40) finish { emission 1 diffuse 0 ambient 0 } ";
 
 double g(double r) { return std::sqrt((1 - 1 / r) / (1 - 1 / R)); }
@@ -39,7 +40,7 @@ Hits hits(const Camera& camera, const std::string& object, const std::function<d
 			const Vec3 c = cross(x, d);
 			const double b = length(c) / std::sqrt(1 - dot(c, c) / std::pow(length(x), 3));
 			Vec3 point, tangent;
-			const bool should = oracle::first_hit(x, d, R, surface, point, tangent);
+			const bool should = oracle::first_hit(x, d, last, surface, point, tangent);
 			const bool is = !seen.is_black(i, j);
 			if (std::fabs(b / critical_b - 1) < 1e-3 || (should && length(point) > 39))
 				continue; // not promised; not painted
@@ -117,14 +118,14 @@ void compare_plane(const char* texture, const std::function<bool(const Vec3& s, 
 		for (int i = 0; i < camera.width; i++) {
 			const Vec3 x = camera.location, d = camera_direction(x, camera.pixel(i, j));
 			Vec3 point, tangent, again, t2, leaves, direction, position;
-			if (!oracle::first_hit(x, d, R, surface, point, tangent))
+			if (!oracle::first_hit(x, d, last, surface, point, tangent))
 				continue;
 			const double f = g(length(point));
 			const Vec3 in = unit(radial_times(point, tangent, 1 / f)), normal = unit(radial_times(point, n, f));
 			if (!law(in, normal, leaves))
 				continue;
 			const Vec3 out = unit(radial_times(point, leaves, f));
-			if (oracle::first_hit(point, out, R, surface, again, t2))
+			if (oracle::first_hit(point, out, last, surface, again, t2))
 				continue; // comes back to the plane: another story
 			double b;
 			if (!oracle::exit_direction(point, out, R, direction, position, &b) || std::fabs(b / critical_b - 1) < 0.02)

@@ -42,7 +42,7 @@ class Blackhole : public ObjectBase
 		virtual void Invert() { }
 		virtual void Compute_BBox();
 
-		DBL Reach() const { return Effect_Radius > 0.0 ? Effect_Radius : 1000.0 * Radius; }
+		DBL Reach() const { return Effect_Radius > 0.0 ? Effect_Radius : 10000.0 * Radius; }
 		blackhole::Settings Settings() const;
 		/// Scene coordinates to the hole's: relative to the centre, in Schwarzschild radii; and back.
 		blackhole::Vec3 To_Hole(const VECTOR p) const
