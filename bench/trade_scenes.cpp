@@ -31,6 +31,7 @@ Scene with(Scene s, const Plane& plane) {
 
 std::vector<Scene> scenes() {
 	const Plane disc{{0, 0, 0}, {0, 1, 0}, 3, 10, false}, wall{{0, 0, 10}, {0, 0, 1}, 0, 1e9, false};
+	const Plane floor{{0, -3, 0}, {0, 1, 0}, 0, 1e9, false};
 	const Scene glass = scene("mirror", "looking-glass of 10 Rs beside the hole from 12 Rs, angle 67", 12, 7, 67, 12);
 	const Vec3 beside{7, 0, 5}, behind{0, 0, 6};
 	// The hole is seen in the middle of the one; the other throws light by the hole a second time.
@@ -42,6 +43,7 @@ std::vector<Scene> scenes() {
 		scene("near", "sky from 10 Rs, angle 67", 10, 7, 67),
 		with(scene("disc", "disc of 3 to 10 Rs from 25 Rs, angle 55", 25, 10, 55), disc),
 		with(scene("wall", "wall 10 Rs behind the hole from 10 Rs, angle 67", 10, 7, 67), wall),
+		with(scene("floor", "floor 3 Rs below the hole from 10 Rs, angle 67", 10, 7, 67), floor),
 		with(scene("close", "disc of 3 to 10 Rs from 2 Rs, past the hole, angle 90", 2, 30, 90, 60), disc),
 		with(glass, mirror),
 		with(scene("twice", "mirror 6 Rs behind the hole from 12 Rs, angle 60", 12, 7, 60), back),

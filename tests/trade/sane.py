@@ -9,7 +9,7 @@ import math
 import subprocess
 import sys
 
-DIRECT = ("far", "middle", "near", "disc", "wall", "close")
+DIRECT = ("far", "middle", "near", "disc", "wall", "floor", "close")
 bad = []
 
 
