@@ -95,6 +95,19 @@ TEST(Report, StatisticsByShell) {
 	EXPECT_NEAR(value(run.text.substr(run.text.find("Tested at Radii:")), "From"), std::sqrt(18.0) - 1, 0.7) << "by its box";
 	EXPECT_GT(value(run.text, "Hits:"), 0);
 	EXPECT_LE(value(run.text, "Hits:"), value(run.text, "Chords Tested:"));
+
+	// Of many shells the busiest, and the rest in one line.
+	const std::string many = povray(camera + "#for (I, 0, 11) sphere { <3 + I, 0, 3 + I>, 0.2 pigment { rgb 1 } } #end "
+											 "blackhole { 0, 1 effect_radius 100 }",
+		64, 48)
+								 .text;
+	double sum = 0;
+	int lines = 0;
+	for (std::size_t at = 0; (at = many.find("Tested at Radii:", at)) != std::string::npos; at++, lines++)
+		sum += value(many.substr(at), "Tested at Radii:");
+	EXPECT_EQ(sum, value(many, "Chords Tested:"));
+	EXPECT_LE(lines, 7) << many;
+	EXPECT_NE(joined(many).find("shells more"), std::string::npos) << many;
 }
 
 // A surface whose normals are no numbers: its reflections are black, and that is said.

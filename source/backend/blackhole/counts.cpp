@@ -53,12 +53,50 @@ void Blackhole_Counts::Add_Tested(size_t hole, const Shells& shells, DBL nearest
 		By_Shell.resize(hole + 1);
 	const std::vector<std::pair<DBL, DBL> >& list = shells.List();
 	By_Shell[hole].resize(list.size());
-	for(size_t i = 0; i < list.size(); i++)
-		if((nearest <= list[i].second) && (farthest >= list[i].first))
+	// Merged shells are in order, and apart.
+	size_t first = 0, last = list.size();
+	while(first < last)
+	{
+		const size_t middle = (first + last) / 2;
+		if(list[middle].second < nearest)
+			first = middle + 1;
+		else
+			last = middle;
+	}
+	if((first < list.size()) && (list[first].first <= farthest))
+		By_Shell[hole][first]++;
+}
+
+// The lines of one hole's shells: those of the most chords, and what is left.
+static std::string Of_Shells(const std::vector<POV_ULONG>& tested, const Shells& shells, const std::string& hole)
+{
+	static const size_t MOST = 6;
+	std::vector<POV_ULONG> sorted(tested);
+	std::sort(sorted.rbegin(), sorted.rend());
+	const POV_ULONG least = sorted.size() > MOST ? sorted[MOST] + 1 : 0;
+	std::string lines;
+	char text[256], farthest[40];
+	double rest = 0.0;
+	int others = 0;
+	for(size_t i = 0; i < tested.size(); i++)
+	{
+		const std::pair<DBL, DBL>& shell = shells.List()[i];
+		if(tested[i] < least)
 		{
-			By_Shell[hole][i]++;
-			return;
+			rest += double(tested[i]);
+			others++;
+			continue;
 		}
+		snprintf(farthest, sizeof farthest, shell.second < 1e6 ? "to %.4g" : "on", shell.second);
+		snprintf(text, sizeof text, "Tested at Radii:    %15.0f   From %.4g %s Rs", double(tested[i]), shell.first, farthest);
+		lines += text + hole + "\n";
+	}
+	if(others > 0)
+	{
+		snprintf(text, sizeof text, "Tested at Radii:    %15.0f   In %d shells more", rest, others);
+		lines += text + hole + "\n";
+	}
+	return lines;
 }
 
 std::string Blackhole_Counts::Text(const std::vector<Blackhole *>& holes, const std::vector<Shells>& shells) const
@@ -79,20 +117,10 @@ std::string Blackhole_Counts::Text(const std::vector<Blackhole *>& holes, const 
 	         double(Tested), double(Skipped), double(Object_Tests), double(Hits), Most_Swept / (2.0 * M_PI), Drift);
 	std::string lines(text);
 	for(size_t h = 0; h < By_Shell.size(); h++)
-		for(size_t i = 0; i < By_Shell[h].size(); i++)
-		{
-			const std::pair<DBL, DBL>& shell = shells[h].List()[i];
-			char farthest[40] = "on";
-			if(shell.second < 1e6)
-				snprintf(farthest, sizeof farthest, "to %.4g", shell.second);
-			snprintf(text, sizeof text, "Tested at Radii:    %15.0f   From %.4g %s Rs%s", double(By_Shell[h][i]), shell.first, farthest, holes.size() > 1 ? ", hole at " : "\n");
-			lines += text;
-			if(holes.size() > 1)
-			{
-				snprintf(text, sizeof text, "<%g,%g,%g>\n", holes[h]->Center[X], holes[h]->Center[Y], holes[h]->Center[Z]);
-				lines += text;
-			}
-		}
+	{
+		snprintf(text, sizeof text, ", hole at <%g,%g,%g>", holes[h]->Center[X], holes[h]->Center[Y], holes[h]->Center[Z]);
+		lines += Of_Shells(By_Shell[h], shells[h], holes.size() > 1 ? text : "");
+	}
 	if(Filled > 0)
 	{
 		snprintf(text, sizeof text, "Through Media, Fog: %15.0f\n", double(Filled));
