@@ -20,7 +20,7 @@ using blackhole::Vec3;
 // A ray may be passed from hole to hole; light that never leaves is as good as captured.
 static const int MOST_PASSAGES = 1000;
 
-void Bent_Path::Begin()
+void Bent_Path::Begin(float weight)
 {
 	if(original.IsPhotonRay() || original.IsSubsurfaceRay())
 		return;
@@ -32,6 +32,7 @@ void Bent_Path::Begin()
 	s.has_tangent = s.captured = s.moved = false;
 	s.travelled = 0.0;
 	s.chords = 0;
+	s.weight = weight;
 	s.drift = 0.0;
 	s.end = "";
 	s.spans.clear();
@@ -142,6 +143,19 @@ size_t Bent_Path::Next_Sphere(const VECTOR from, const Vec3& direction, size_t l
 }
 
 bool Bent_Path::Find_Intersection(Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post)
+{
+	const bool found = Follow(isect, pre, post);
+	if((bent->ends != NULL) && !original.IsPretraceRay())
+	{
+		const Vec3 nowhere = { 0.0, 0.0, 0.0 };
+		const Ray_End end = { (unsigned int)bent->depth, state->weight, state->end, found ? isect.Object : NULL,
+		                      found ? Vec3_Of(isect.IPoint) : state->captured ? nowhere : Vec3_Of(state->chord.Direction) };
+		bent->ends->rays.push_back(end);
+	}
+	return found;
+}
+
+bool Bent_Path::Follow(Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post)
 {
 	Bent_Segment& s = *state;
 	VECTOR at;

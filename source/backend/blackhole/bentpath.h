@@ -17,7 +17,8 @@ namespace pov
 class Bent_Path
 {
 	public:
-		Bent_Path(Bent_Rays *b, const Ray& ray) : bent(b), state(NULL), original(ray) { if(bent != NULL) Begin(); }
+		/// weight: the most of the pixel's light that the ray can carry.
+		Bent_Path(Bent_Rays *b, const Ray& ray, float weight) : bent(b), state(NULL), original(ray) { if(bent != NULL) Begin(weight); }
 		~Bent_Path() { if(state != NULL) End(); }
 
 		/// Whether the ray is ours; photons and subsurface rays go straight.
@@ -43,7 +44,8 @@ class Bent_Path
 		const Ray& Bent_Chord() const;
 		bool Bent_Captured() const;
 		DBL Bent_Travelled() const;
-		void Begin();
+		void Begin(float weight);
+		bool Follow(Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
 		void End();
 		bool Enter(VECTOR origin, blackhole::Vec3& direction);
 		size_t Next_Sphere(const VECTOR from, const blackhole::Vec3& direction, size_t left, DBL& distance) const;

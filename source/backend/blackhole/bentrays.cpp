@@ -25,7 +25,7 @@ Bent_Rays *Bent_Rays::Create(const SceneData& scene, Trace& trace)
 }
 
 Bent_Rays::Bent_Rays(const SceneData& s, Trace& t) :
-	scene(s), holes(*s.blackHoles), trace(t), counts(*s.blackHoles->New_Counts()), depth(0), recorder(NULL)
+	scene(s), holes(*s.blackHoles), trace(t), counts(*s.blackHoles->New_Counts()), depth(0), recorder(NULL), ends(NULL)
 {
 }
 
@@ -34,10 +34,17 @@ Bent_Rays::~Bent_Rays()
 	for(size_t i = 0; i < pool.size(); i++)
 		delete pool[i];
 	delete recorder;
+	delete ends;
 }
 
 void Bent_Rays::Begin(DBL x, DBL y, DBL width, DBL height)
 {
+	if(holes.Ends() != NULL)
+	{
+		ends = new End_Recorder();
+		ends->x = int(floor(x));
+		ends->y = int(floor(y));
+	}
 	if((holes.Paths() == NULL) || !holes.Paths()->Wants(x, y, width, height))
 		return;
 	recorder = new Recorder();
@@ -47,6 +54,12 @@ void Bent_Rays::Begin(DBL x, DBL y, DBL width, DBL height)
 
 void Bent_Rays::End()
 {
+	if(ends != NULL)
+	{
+		holes.Ends()->Keep(ends->x, ends->y, ends->rays);
+		delete ends;
+		ends = NULL;
+	}
 	if(recorder == NULL)
 		return;
 	holes.Paths()->Keep(recorder->x, recorder->y, recorder->rays);

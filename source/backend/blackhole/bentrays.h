@@ -19,6 +19,7 @@ class SceneData;
 class Trace;
 struct Blackhole_Counts;
 struct Bent_Segment;
+struct End_Recorder;
 struct Recorder;
 
 /// A thread's tools for bending rays: one for each Trace object; none in scenes without a hole.
@@ -62,6 +63,7 @@ class Bent_Rays
 		std::vector<Bent_Segment *> pool; ///< states, by depth of recursion
 		size_t depth;
 		Recorder *recorder;                ///< of the pixel in hand; NULL: not kept
+		End_Recorder *ends;                ///< likewise
 };
 
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "backend/render/ray.h"
+#include "backend/blackhole/rayends.h"
 #include "backend/blackhole/raypaths.h"
 #include "blackhole/vec.h"
 
@@ -20,6 +21,13 @@ struct Recorder
 {
 	int x, y;
 	Recorded_Pixel rays;
+};
+
+/// Where they end, likewise.
+struct End_Recorder
+{
+	int x, y;
+	std::vector<Ray_End> rays;
 };
 
 struct Bent_Segment
@@ -43,6 +51,7 @@ struct Bent_Segment
 	DBL before;              ///< length of the way before the span that is being filled
 	size_t record;           ///< index in the recorder, if there is one
 	unsigned int chords;
+	float weight;            ///< the most of the pixel's light that it can carry
 	DBL drift;
 	const char *end;
 };

@@ -14,6 +14,7 @@
 #include "backend/scene/scene.h"
 #include "backend/blackhole/blackholes.h"
 #include "backend/blackhole/options.h"
+#include "backend/blackhole/rayends.h"
 #include "backend/blackhole/raypaths.h"
 #include "backend/blackhole/reach.h"
 
@@ -25,11 +26,13 @@ namespace pov
 
 Blackholes::Blackholes(POVMS_Object& options) :
 	enabled(options.TryGetBool(kPOVAttrib_Blackhole, true)),
+	overrides(options),
 	blind(MIN_ISECT_DEPTH),
 	vague(0.0),
 	far_objects(false),
 	falling(NULL),
-	paths(Ray_Paths::Create(options))
+	paths(Ray_Paths::Create(options)),
+	ends(Ray_Ends::Create(options))
 {
 }
 
@@ -58,13 +61,15 @@ const Blackhole *Blackholes::Overlapping(const Blackhole& hole) const
 
 bool Blackholes::Active() const
 {
-	return !holes.empty() || (paths != NULL);
+	return !holes.empty() || (paths != NULL) || (ends != NULL);
 }
 
 std::string Blackholes::Prepare(const SceneData& scene, TraceThreadData *thread, MessageFactory& messages)
 {
 	std::string report;
 	char text[512];
+	if(ends != NULL)
+		ends->Number(scene.objects);
 	shells.assign(holes.size(), Shells());
 	for(size_t i = 0; i < scene.objects.size(); i++)
 		if(Visible(*scene.objects[i]))
@@ -154,6 +159,8 @@ void Blackholes::Finish(MessageFactory& messages)
 	Sum().Warn(messages);
 	if(paths != NULL)
 		paths->Write(*this, messages);
+	if(ends != NULL)
+		ends->Write(*this, messages);
 }
 
 }

@@ -3,6 +3,7 @@
 #ifndef POVRAY_BLACKHOLES_H
 #define POVRAY_BLACKHOLES_H
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -14,12 +15,14 @@
 #include "backend/blackhole/blackhole.h"
 #include "backend/blackhole/chordtree.h"
 #include "backend/blackhole/counts.h"
+#include "backend/blackhole/overrides.h"
 #include "backend/blackhole/reach.h"
 
 namespace pov
 {
 
 class MessageFactory;
+class Ray_Ends;
 class Ray_Paths;
 class SceneData;
 class TraceThreadData;
@@ -32,12 +35,14 @@ class Blackholes
 
 		/// Whether the scene's holes are wanted (`Blackhole=off` gives the hole-free twin).
 		bool Enabled() const { return enabled; }
+		/// What the INI keys say of every hole.
+		const Hole_Overrides& Overrides() const { return overrides; }
 		/// Takes the hole over. It is checked by the parser before.
 		void Add(Blackhole *hole);
 		/// The first hole whose effect sphere overlaps, or NULL.
 		const Blackhole *Overlapping(const Blackhole& hole) const;
 		const std::vector<Blackhole *>& Holes() const { return holes; }
-		/// Whether rays need us at all: holes to bend them or paths to be written.
+		/// Whether rays need us at all: holes to bend them, paths or ends to be written.
 		bool Active() const;
 
 		/// After parsing: finds what is within reach, says so, and warns of what straddles the horizon.
@@ -63,14 +68,21 @@ class Blackholes
 		Blackhole_Counts *New_Counts();
 		/// The statistics block's lines; empty without holes.
 		void Get_Statistics(POVMS_Object& stats);
-		/// At the end of a view: writes the ray paths, and warns of what went wrong, by name and number.
+		/// At the end of a view: writes the ray paths and ends, and warns of what went wrong, by name and number.
 		void Finish(MessageFactory& messages);
 
+		/// `Sample_Blocks`: adds to the list the blocks that are not rendered, of so many in all. The one that is stands anywhere
+		/// among its N, the same in each run, so that columns of a picture are met alike. Whether the list counts from the first
+		/// pass on; false without the option. Throws if it is no number.
+		static bool Sample_Blocks(POVMS_Object& options, const SceneData& scene, unsigned int blocks, std::set<unsigned int>& skipped);
+
 		Ray_Paths *Paths() const { return paths.get(); }
+		Ray_Ends *Ends() const { return ends.get(); }
 	private:
 		Blackhole_Counts Sum();
 
 		bool enabled;
+		Hole_Overrides overrides;
 		std::vector<Blackhole *> holes;
 		std::vector<Shells> shells;
 		Chord_Tree tree;
@@ -79,6 +91,7 @@ class Blackholes
 		bool far_objects;
 		const Blackhole *falling;
 		boost::scoped_ptr<Ray_Paths> paths;
+		boost::scoped_ptr<Ray_Ends> ends;
 		boost::mutex mutex;
 		std::vector<Blackhole_Counts *> counts;
 

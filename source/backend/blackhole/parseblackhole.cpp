@@ -206,6 +206,7 @@ bool Parser::Link_Blackholes(ObjectPtr object)
 			Destroy_Object(hole);
 			return true;
 		}
+		holes.Overrides().Apply(*hole);
 		if(const Blackhole *other = holes.Overlapping(*hole))
 		{
 			const DBL fit = 0.5 * other->Distance(hole->Center);
