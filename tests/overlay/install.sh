@@ -27,6 +27,8 @@ printf '#version 3.7; #include "colors.inc"\n#include "blackhole.inc"\nglobal_se
 HOME=$work/home "$(find "$work/to" -name povray -type f -perm -1)" +Iscene.pov -D >out 2>&1 || fail "$(tail -3 out)"
 grep -q 'Image resolution.....40 by 30' out || fail "the user's povray.ini was not read"
 [ -f scene.png ] || fail "no picture"
+HOME=$work/home "$(find "$work/to" -name bhtrade -type f -perm -1)" scene.pov >out 2>&1 || fail "bhtrade: $(tail -3 out)"
+grep -q 'scene.pov, 40 x 30: errors in pixels' out || fail "bhtrade says: $(head -3 out)"
 
 DESTDIR=$work/to cmake --build "$build" --target uninstall >/dev/null
 [ -z "$(find "$work/to" -type f)" ] || fail "left behind: $(find "$work/to" -type f | head -3)"
