@@ -15,8 +15,8 @@ STEEP = 3 # times the usual change,
 BENT = 0.15 # of which that much is a bend: there the reference is no straight line from one third of a pixel to the next
 FAINT = 1e-8 # of the larger square of a singular value: a direction along which the reference does not change explains nothing
 
-OFFSETS = sorted(
-	((math.hypot(x, y) / FINE, x, y) for x in range(-5, 6) for y in range(-5, 6) if 0 < math.hypot(x, y) <= REACH * FINE))
+NEAR = range(-int(REACH * FINE), int(REACH * FINE) + 1)
+OFFSETS = sorted((math.hypot(x, y) / FINE, x, y) for x in NEAR for y in NEAR if 0 < math.hypot(x, y) <= REACH * FINE)
 
 
 def inverse(a, b):

@@ -21,7 +21,7 @@ def seconds(value):
 
 
 def pixels(value):
-	return "far off" if math.isinf(value) else number(float(f"{value:.2g}")) if value < 10 else f"{value:.0f}"
+	return "far off" if math.isinf(value) else number(float(f"{value:.2g}")) if value < 10 else f"{value:.0f}" if value < 100 else ">99"
 
 
 def share(value):
