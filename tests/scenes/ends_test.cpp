@@ -52,14 +52,6 @@ std::map<std::pair<int, int>, std::vector<End>> read_ends(const std::string& fil
 	return ends;
 }
 
-std::string joined(const std::string& text) {
-	std::string out;
-	for (char c : text)
-		if (c != '\n' && !(c == ' ' && !out.empty() && out.back() == ' '))
-			out += c;
-	return out;
-}
-
 double value(const std::string& text, const std::string& label) {
 	const std::size_t at = text.find(label);
 	return at == std::string::npos ? -1 : std::strtod(text.c_str() + at + label.size(), nullptr);
@@ -113,7 +105,8 @@ TEST(Ray_Ends, AreWhereRaysEnd) {
 	const Vec3 eye{0, 1, -15};
 	const Camera view(eye, {0, -0.05, 1}, 0.03, w, h);
 	const double R = 1000, tolerance = 1e-6;
-	const Rendering run = povray(view.text() + sky + objects + "blackhole { 0, 1 tolerance 1e-6 }", w, h, "Ray_Ends=e.csv");
+	const Rendering run =
+		povray(view.text() + sky + objects + "blackhole { 0, 1 effect_radius 1000 tolerance 1e-6 }", w, h, "Ray_Ends=e.csv");
 	std::string holes;
 	const auto ends = read_ends(run.folder + "/e.csv", &holes);
 	EXPECT_EQ(holes.rfind("# hole 0 0 0 Rs 1 effect_radius 1000 tolerance 9.9999999999999995e-07 method rk4\n", 0), 0u) << holes;
