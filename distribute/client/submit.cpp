@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace farm {
 
@@ -25,25 +26,33 @@ const std::vector<Option> scene_options = {
 
 namespace {
 
-/// Random streams belong to blocks of so many rows, so cuts do too.
+/// povray traces whole blocks of so many rows; cuts elsewhere would trace some twice.
 constexpr int block = 32;
 
-int strip_rows(const JobSpec& spec, const std::string& strips, int slots) {
-	if (!spec.whole_because.empty())
-		return spec.height;
-	const int most = (spec.height + block - 1) / block;
+/// So long that parsing is under a twentieth of it, so short that the job's last strips keep every slot busy; half a minute at
+/// most.
+double good_seconds(const Gathered& files, int frames, int slots) {
+	const double last = files.frame_seconds * frames / (8.0 * slots);
+	return std::max(20 * files.parse_seconds, std::min(30.0, last));
+}
+
+int strip_rows(const JobSpec& spec, const Gathered& files, const std::string& strips, int slots) {
 	int count = 0;
-	if (strips == "auto") {
-		// So many strips that the last of them keep every slot busy.
-		count = std::min(most, (8 * slots + spec.frames() - 1) / spec.frames());
-	} else {
+	if (strips != "auto") {
 		count = static_cast<int>(whole_number(strips, "--strips", 1, limits::pixels));
-		if (count > most)
-			throw Error("--strips is " + strips + "; a strip has at least " + std::to_string(block) + " rows, so " +
-						std::to_string(spec.height) + " rows make at most " + std::to_string(most));
+		if (count > spec.height)
+			throw Error("--strips is " + strips + ", and a frame has " + std::to_string(spec.height) + " rows");
 	}
-	const int rows = (spec.height + count - 1) / count;
-	return count == 1 ? spec.height : (rows + block - 1) / block * block;
+	if (!spec.whole_because.empty() || count == 1)
+		return spec.height;
+	const int blocks = (spec.height + block - 1) / block;
+	if (count > blocks) // as asked for, at some cost
+		return (spec.height + count - 1) / count;
+	if (strips == "auto") {
+		const double many = files.frame_seconds / good_seconds(files, spec.frames(), slots);
+		count = static_cast<int>(std::clamp(std::ceil(many), 1.0, static_cast<double>(blocks)));
+	}
+	return (blocks + count - 1) / count * block;
 }
 
 } // namespace
@@ -64,7 +73,7 @@ Prepared prepare(const Arguments& arguments, int slots) {
 			throw Error("--video is '" + video + "'; its name must end in .mp4");
 	}
 	p.files = gather(p.scene, find_povray(arguments.get("--povray")), arguments.all("--assets"));
-	spec.strip_rows = strip_rows(spec, arguments.get("--strips"), slots);
+	spec.strip_rows = strip_rows(spec, p.files, arguments.get("--strips"), slots);
 	spec.check();
 	for (const auto& remark : p.scene.remarks)
 		say(remark);

@@ -18,6 +18,12 @@ namespace farm {
 
 template <class T> using Awaitable = boost::asio::awaitable<T>;
 
+/// Tells a handler that waits that nobody waits for it any more.
+struct Peer {
+	bool gone = false;
+	std::function<void()> tell; ///< called once when it goes, if set
+};
+
 struct Request {
 	std::string method;
 	std::string path;                           ///< without the query
@@ -28,6 +34,7 @@ struct Request {
 	std::filesystem::path
 		file;         ///< where the body went, for routes with Body::file; removed after the handler unless it was moved away
 	std::string from; ///< the peer's address
+	std::shared_ptr<Peer> peer; ///< for routes that wait; else null
 
 	/// A query's value, or `otherwise`.
 	std::string asked(const std::string& name, const std::string& otherwise = "") const {

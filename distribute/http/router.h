@@ -12,7 +12,8 @@ namespace farm {
 using Handler = std::function<Awaitable<Response>(Request&)>;
 
 enum class Access { token, open };
-enum class Body { memory, file };
+/// Where a request's body goes; long_poll: to memory, and the handler may wait, so it is told when the peer hangs up.
+enum class Body { memory, file, long_poll };
 
 struct Route {
 	std::string method;

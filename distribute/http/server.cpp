@@ -3,31 +3,40 @@
 
 #include "distribute/common/error.h"
 #include "distribute/common/hash.h"
+#include "distribute/http/send.h"
 
 #include <boost/asio.hpp>
 #include <boost/beast.hpp>
 #include <boost/beast/ssl.hpp>
-#include <nlohmann/json.hpp>
-
 #include <chrono>
 #include <limits>
+#include <sys/socket.h>
 
 namespace farm {
 
-namespace asio = boost::asio;
-namespace beast = boost::beast;
-namespace http = beast::http;
-using Code = boost::system::error_code;
 using asio::ip::tcp;
 
 struct Connection {
 	beast::flat_buffer buffer;
 	std::string from;
+	bool unread = false; ///< an answer went out before the request was read to its end
 };
 
 namespace {
 
 auto patience(double seconds) { return std::chrono::milliseconds(static_cast<std::int64_t>(1000 * seconds)); }
+
+/// Looks out for the end of a connection while nothing is read from it.
+void look_out(tcp::socket& socket, const std::shared_ptr<Peer>& peer) {
+	socket.async_wait(tcp::socket::wait_read, [&socket, peer](const Code& error) {
+		char c = 0;
+		if (error || ::recv(socket.native_handle(), &c, 1, MSG_PEEK | MSG_DONTWAIT) > 0)
+			return; // the answer is on its way, or the peer has sent more already
+		peer->gone = true;
+		if (peer->tell)
+			peer->tell();
+	});
+}
 
 template <class Fields> void copy_headers(const Fields& fields, Request& request) {
 	for (const auto& field : fields) {
@@ -36,83 +45,6 @@ template <class Fields> void copy_headers(const Fields& fields, Request& request
 			c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
 		request.headers[name] = std::string(field.value());
 	}
-}
-
-template <class Body> http::response<Body> head(const Response& from, unsigned version, bool keep) {
-	http::response<Body> answer(static_cast<http::status>(from.status), version);
-	answer.set(http::field::server, "bhfarm");
-	answer.set(http::field::content_type, from.type);
-	for (const auto& [name, value] : from.headers)
-		answer.set(name, value);
-	answer.keep_alive(keep);
-	return answer;
-}
-
-Response error_response(int status, const std::string& what) {
-	Response response;
-	response.status = status;
-	response.body = nlohmann::json{{"error", what}}.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-	return response;
-}
-
-template <class Stream> class ChunkSink : public Sink {
-public:
-	explicit ChunkSink(Stream& s) : stream(s) {}
-	Awaitable<bool> write(std::string text) override {
-		if (text.empty())
-			co_return alive;
-		Code error;
-		beast::get_lowest_layer(stream).expires_after(std::chrono::seconds(30));
-		co_await asio::async_write(
-			stream, http::make_chunk(asio::buffer(text)), asio::redirect_error(asio::use_awaitable, error));
-		beast::get_lowest_layer(stream).expires_never();
-		alive = !error;
-		co_return alive;
-	}
-
-private:
-	Stream& stream;
-	bool alive = true;
-};
-
-template <class Stream> Awaitable<bool> send(Stream& stream, Response& from, unsigned version, bool keep, bool only_head) {
-	Code error;
-	if (from.stream && !only_head) {
-		auto answer = head<http::empty_body>(from, version, false);
-		answer.chunked(true);
-		http::response_serializer<http::empty_body> serializer(answer);
-		co_await http::async_write_header(stream, serializer, asio::redirect_error(asio::use_awaitable, error));
-		if (!error) {
-			ChunkSink<Stream> sink(stream);
-			co_await from.stream(sink);
-			co_await asio::async_write(stream, http::make_chunk_last(), asio::redirect_error(asio::use_awaitable, error));
-		}
-		co_return false;
-	}
-	if (!from.file.empty()) {
-		http::file_body::value_type body;
-		body.open(from.file.c_str(), beast::file_mode::scan, error);
-		if (!error) {
-			auto answer = head<http::file_body>(from, version, keep);
-			const auto size = body.size();
-			answer.body() = std::move(body);
-			answer.content_length(size);
-			http::response_serializer<http::file_body> serializer(answer);
-			if (only_head)
-				co_await http::async_write_header(stream, serializer, asio::redirect_error(asio::use_awaitable, error));
-			else
-				co_await http::async_write(stream, serializer, asio::redirect_error(asio::use_awaitable, error));
-			co_return !error && keep;
-		}
-		from = error_response(404, "it is not there");
-	}
-	auto answer = head<http::string_body>(from, version, keep);
-	answer.content_length(from.body.size());
-	if (!only_head)
-		answer.body() = std::move(from.body);
-	http::response_serializer<http::string_body> serializer(answer);
-	co_await http::async_write(stream, serializer, asio::redirect_error(asio::use_awaitable, error));
-	co_return !error && keep;
 }
 
 } // namespace
@@ -209,6 +141,14 @@ template <class Stream> Awaitable<void> HttpServer::serve(Stream& stream, std::s
 	bool more = true;
 	while (more)
 		more = co_await exchange(stream, connection);
+	if (!connection.unread)
+		co_return;
+	// Closed at once, what still comes in would make the system throw away what has gone out: the peer would not learn why.
+	Code error;
+	beast::get_lowest_layer(stream).expires_after(std::chrono::seconds(5));
+	std::vector<char> rest(1 << 16);
+	for (int pieces = 0; pieces < 1 << 10 && !error; ++pieces)
+		co_await stream.async_read_some(asio::buffer(rest), asio::redirect_error(asio::use_awaitable, error));
 }
 
 bool HttpServer::admits(const Request& request) const {
@@ -286,7 +226,15 @@ template <class Stream> Awaitable<bool> HttpServer::exchange(Stream& stream, Con
 		}
 		body_read = true;
 		lowest.expires_never();
+		if (route.body == Body::long_poll) {
+			request.peer = std::make_shared<Peer>();
+			look_out(lowest.socket(), request.peer);
+		}
 		response = co_await route.handler(request);
+		if (request.peer)
+			lowest.socket().cancel(error);
+		if (request.peer && request.peer->gone)
+			co_return false;
 	} catch (const HttpError& e) {
 		response = error_response(e.status, e.what());
 	} catch (const Error& e) {
@@ -302,6 +250,7 @@ template <class Stream> Awaitable<bool> HttpServer::exchange(Stream& stream, Con
 	if (!response.stream)
 		lowest.expires_after(patience(settings.body_seconds));
 	// A body that was not read would be taken for the next request.
+	connection.unread = !body_read;
 	co_return co_await send(stream, response, version, keep && body_read, request.method == "HEAD");
 }
 

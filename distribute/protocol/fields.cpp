@@ -89,6 +89,13 @@ const json& Fields::object(const char* key) const {
 	return *value;
 }
 
+std::string shown(const std::string& text) {
+	std::string line = text.substr(0, 80);
+	for (char& c : line)
+		c = static_cast<unsigned char>(c) < 32 || c == 127 ? '?' : c;
+	return line;
+}
+
 bool is_plain_name(const std::string& name) {
 	return !name.empty() && name != "." && name != ".." && name.size() <= 255 &&
 		   std::all_of(

@@ -32,6 +32,9 @@ private:
 	std::string what;
 };
 
+/// A stranger's text as part of one line: at most 80 bytes, without control characters.
+std::string shown(const std::string& text);
+
 /// A file's name: not empty, no slash, no control character, neither "." nor "..".
 bool is_plain_name(const std::string& name);
 /// A relative path of such names that stays inside.

@@ -25,12 +25,12 @@ void JobSpec::check() const {
 						" to " + std::to_string(most));
 	};
 	if (!is_plain_name(name) || name.size() > 200)
-		throw Error("name is '" + name + "'; it must be a file's name without its folder");
+		throw Error("name is '" + shown(name) + "'; it must be a file's name without its folder");
 	if (!is_sha256(bundle))
-		throw Error("bundle is '" + bundle + "'; it must be 64 hexadecimal digits");
+		throw Error("bundle is '" + shown(bundle) + "'; it must be 64 hexadecimal digits");
 	for (const auto& line : options)
 		if (line.find_first_of("\n\r") != std::string::npos || line.find('=') == std::string::npos || line.size() > 4096)
-			throw Error("options has '" + line.substr(0, 80) + "'; each must be one line KEY=VALUE");
+			throw Error("options has '" + shown(line) + "'; each must be one line KEY=VALUE");
 	in("width", width, 1, limits::pixels);
 	in("height", height, 1, limits::pixels);
 	in("first", first, 0, 1 << 30);
@@ -39,8 +39,6 @@ void JobSpec::check() const {
 	in("frames", std::int64_t(last - first) / step + 1, 1, animation ? limits::frames : 1);
 	in("digits", digits, 0, 10);
 	in("strip_rows", strip_rows, 1, limits::pixels);
-	if (strip_rows < height && strip_rows % 32)
-		throw Error("strip_rows is " + std::to_string(strip_rows) + "; it must be a multiple of 32, or the height");
 	in("strips", std::int64_t(frames()) * strips_per_frame(), 1, limits::strips);
 	in("priority", priority, -100, 100);
 	if (!(film_rate >= 0 && film_rate <= 1000))
@@ -58,7 +56,7 @@ void from_json(const json& j, BundleFile& v) {
 	v.sha256 = f.hash("sha256");
 	v.bytes = f.integer("bytes", 0, limits::file_bytes);
 	if (!is_inner_path(v.name))
-		throw Error("file name '" + v.name + "' must be a relative path in UTF-8 without '..'");
+		throw Error("file name '" + shown(v.name) + "' must be a relative path in UTF-8 without '..'");
 }
 
 void to_json(json& j, const Bundle& v) { j = json{{"folder", v.folder}, {"files", v.files}}; }
@@ -67,7 +65,7 @@ void from_json(const json& j, Bundle& v) {
 	const Fields f(j, "bundle");
 	v.folder = f.text("folder", 0, 1000);
 	if (!v.folder.empty() && !is_inner_path(v.folder))
-		throw Error("bundle folder '" + v.folder + "' must be a relative path without '..'");
+		throw Error("bundle folder '" + shown(v.folder) + "' must be a relative path without '..'");
 	const json& files = f.array("files", limits::files);
 	v.files.clear();
 	std::int64_t bytes = 0;
@@ -84,7 +82,7 @@ void from_json(const json& j, Bundle& v) {
 	std::sort(names.begin(), names.end());
 	for (size_t i = 1; i < names.size(); ++i)
 		if (names[i] == names[i - 1] || names[i].rfind(names[i - 1] + "/", 0) == 0)
-			throw Error("the bundle has '" + names[i - 1] + "' twice");
+			throw Error("the bundle has '" + shown(names[i - 1]) + "' twice");
 }
 
 void to_json(json& j, const JobSpec& v) {
@@ -114,7 +112,7 @@ void from_json(const json& j, JobSpec& v) {
 	v.digits = number("digits", 10);
 	const std::string format = f.text("format", 3, 3);
 	if (format != "png" && format != "exr")
-		throw Error("job: format is '" + format + "'; it must be png or exr");
+		throw Error("job: format is '" + shown(format) + "'; it must be png or exr");
 	v.format = format == "png" ? Format::png : Format::exr;
 	v.bits = number("bits", 32);
 	v.strip_rows = number("strip_rows", limits::pixels);

@@ -59,7 +59,7 @@ struct JobSpec {
 	int digits = 0;                    ///< of the frame number in the pictures' names
 	Format format = Format::png;
 	int bits = 8;              ///< a channel
-	int strip_rows = 0;        ///< rows of a strip; a multiple of 32, or at least the height
+	int strip_rows = 0;        ///< rows of a strip, the last of a frame apart; multiples of 32 cost least
 	std::string whole_because; ///< why frames are not cut; empty if they may be
 	int priority = 0;          ///< higher first, from -100 to 100
 	double film_rate = 0;      ///< frames a second of the film; 0: none

@@ -10,9 +10,8 @@
 namespace farm {
 namespace {
 
-/// What makes a strip's pixels those of the whole frame: random streams by pixel, not by thread. One thread, so that a slot is a
-/// core.
-const char* const same_pixels = "Work_Threads=1\n";
+/// What makes a strip's pixels those of the whole frame, whatever the cuts; and a slot a core.
+const char* const same_pixels = "Reproducible=On\nWork_Threads=1\n";
 
 } // namespace
 
@@ -31,11 +30,11 @@ std::string povray_ini(const JobSpec& spec, int frame) {
 std::string strip_ini(const Task& task, const std::filesystem::path& picture) {
 	const JobSpec& spec = task.spec;
 	std::string ini = povray_ini(spec, task.frame);
-	// Rows count from 1, and 1 itself would mean 100 %: the first and the last are said by saying nothing.
+	// Rows count from 1, and 1 itself would mean 100 %: 1.5 is the first.
 	if (task.row > 0)
 		ini += "Start_Row=" + std::to_string(task.row + 1) + "\n";
-	if (task.row + task.rows < spec.height)
-		ini += "End_Row=" + std::to_string(task.row + task.rows) + "\n";
+	if (const int end = task.row + task.rows; end < spec.height)
+		ini += "End_Row=" + (end == 1 ? "1.5" : std::to_string(end)) + "\n";
 	ini += std::string("Output_To_File=On\nOutput_File_Type=") + (spec.format == Format::png ? "N" : "E") + "\n";
 	ini += "Bits_Per_Color=" + std::to_string(spec.bits) + "\nOutput_File_Name=\"" + picture.string() + "\"\n";
 	return ini;

@@ -4,60 +4,17 @@
 #include "distribute/common/error.h"
 #include "distribute/common/files.h"
 #include "distribute/common/hash.h"
-#include "distribute/render/povray.h"
+#include "distribute/scene/dryrun.h"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <glob.h>
 #include <regex>
 #include <set>
-#include <sstream>
 
 namespace farm {
 namespace {
-
-fs::path reads_library() {
-	const fs::path here = program_folder();
-	for (const char* place : {"bhfarm-reads.so", "../lib/bhfarm/bhfarm-reads.so"})
-		if (fs::exists(here / place))
-			return (here / place).lexically_normal();
-	throw Error("bhfarm-reads.so is missing beside bhfarm; build or install again");
-}
-
-/// The files that one frame reads, as POV-Ray named them.
-std::set<std::string> parse(const SettledScene& scene, int frame, const fs::path& povray, double& longest) {
-	const ScratchFolder scratch(fs::temp_directory_path());
-	const fs::path list = scratch.path() / "reads", ini = scratch.path() / "povray.ini", log = scratch.path() / "log";
-	std::string text = povray_ini(scene.spec, frame);
-	text += "Antialias=Off\nQuality=0\nOutput_To_File=Off\nWork_Threads=1\n";
-	// One pixel. 1 would mean all of them.
-	if (scene.spec.height > 1)
-		text += "Start_Row=" + std::to_string(scene.spec.height) + "\n";
-	if (scene.spec.width > 1)
-		text += "Start_Column=" + std::to_string(scene.spec.width) + "\n";
-	for (const auto& library : scene.libraries)
-		text += ini_line({"Library_Path", library.string()}) + "\n";
-	write_durably(ini, text);
-	Command command = povray_command(povray, ini, scratch.path());
-	command.folder = scene.scene.parent_path();
-	command.log = log;
-	command.environment["LD_PRELOAD"] = reads_library();
-	command.environment["BHFARM_READS"] = list;
-	const auto start = std::chrono::steady_clock::now();
-	const int code = run(command);
-	longest = std::max(longest, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-	if (code != 0)
-		throw Error(code == 127 && !fs::exists(log) ? "cannot run " + povray.string()
-													: error_line(fs::exists(log) ? read_file(log) : "", code));
-	std::set<std::string> names;
-	std::istringstream lines(fs::exists(list) ? read_file(list) : "");
-	for (std::string line; std::getline(lines, line);)
-		if (line != ini)
-			names.insert(line);
-	return names;
-}
 
 /// Below which name the scene asked for a file: POV-Ray looks in its own folder first and then in the libraries.
 std::string asked_name(const std::string& found, const SettledScene& scene) {
@@ -125,8 +82,13 @@ Gathered gather(SettledScene& scene, const fs::path& povray, const std::vector<s
 	JobSpec& spec = scene.spec;
 	std::set<std::string> reads;
 	const int count = spec.animation ? (spec.last - spec.first) / spec.step + 1 : 1;
-	for (const int index : std::set<int>{0, count / 2, count - 1})
-		reads.merge(parse(scene, spec.frame(index), povray, result.parse_seconds));
+	for (const int index : std::set<int>{0, count / 2, count - 1}) {
+		Parsed parsed = parse(scene, spec.frame(index), povray);
+		reads.merge(parsed.reads);
+		result.parse_seconds = std::max(result.parse_seconds, parsed.seconds);
+		if (spec.whole_because.empty() && parsed.said.find("An isosurface has 'evaluate'") != std::string::npos)
+			spec.whole_because = "an isosurface has 'evaluate', which learns from pixel to pixel";
+	}
 	reads.insert(scene.scene.filename().string());
 
 	std::map<std::string, fs::path> files; // by the name asked for
@@ -153,11 +115,13 @@ Gathered gather(SettledScene& scene, const fs::path& povray, const std::vector<s
 		result.bundle.files.push_back({inner, hash, static_cast<std::int64_t>(fs::file_size(path))});
 		result.sources[hash] = path;
 		if (spec.whole_because.empty() && has_radiosity(path))
-			spec.whole_because = "radiosity gathers from the whole frame (" + path.filename().string() + ")";
+			spec.whole_because = "radiosity looks at the whole frame first (" + path.filename().string() + ")";
 	}
 	std::sort(
 		result.bundle.files.begin(), result.bundle.files.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
 	spec.bundle = result.bundle.id();
+	if (spec.whole_because.empty())
+		result.frame_seconds = frame_time(scene, spec.frame(count / 2), povray, result.parse_seconds, 10);
 	// The same checks as the server's, before anything is sent.
 	json(result.bundle).get<Bundle>();
 	return result;

@@ -18,7 +18,8 @@ const char* const dropped[] = {"Display", "Display_Words", "Display_Gamma", "Ver
 	"All_File", "Debug_Console", "Debug_File", "Fatal_Console", "Fatal_File", "Render_Console", "Render_File",
 	"Statistic_Console", "Statistic_File", "Warning_Console", "Warning_File", "Append_File", "Continue_Trace", "Create_Ini",
 	"Work_Threads", "Preview_Start_Size", "Preview_End_Size", "Video_Mode", "Palette", "Test_Abort", "Test_Abort_Count",
-	"Draw_Vistas", "Output_To_File", "Render_Pattern", "Render_Block_Step", "Buffer_Output", "Buffer_Size"};
+	"Draw_Vistas", "Output_To_File", "Render_Pattern", "Render_Block_Step", "Buffer_Output", "Reproducible", "Pixels_To_File",
+	"Pixels_From_File", "Buffer_Size"};
 /// Left out with a word about it.
 const char* const remarked[] = {"Ray_Paths", "Ray_Paths_Grid", "Radiosity_File_Name", "Radiosity_From_File", "Radiosity_To_File"};
 const char* const refused[] = {"Start_Row", "End_Row", "Start_Column", "End_Column", "Real_Time_Raytracing",

@@ -53,8 +53,12 @@ void add_job_routes(Router& router, Farm& farm) {
 			list.push_back(describe(farm, job));
 		co_return answer({{"jobs", list}});
 	});
-	router.add("GET", "/v1/jobs/*",
-		[&farm](Request& r) -> Awaitable<Response> { co_return answer(describe(farm, farm.job(id_of(r.parts[0], "job")))); });
+	router.add("GET", "/v1/jobs/*", [&farm](Request& r) -> Awaitable<Response> {
+		const Job& job = farm.job(id_of(r.parts[0], "job"));
+		json whole = describe(farm, job);
+		whole["spec"] = job.row.spec;
+		co_return answer(whole);
+	});
 	router.add("GET", "/v1/jobs/*/strips", [&farm](Request& r) -> Awaitable<Response> {
 		const Job& job = farm.job(id_of(r.parts[0], "job"));
 		json frames = json::array();

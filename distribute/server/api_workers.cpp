@@ -74,12 +74,12 @@ void add_worker_routes(Router& router, Farm& farm) {
 		[&farm](Request& r) -> Awaitable<Response> {
 			const json body = parse_object(r.body);
 			const double wait = Fields(body, "take").real("wait", 0, 300, 0);
-			const auto task = co_await farm.take(r.parts[0], wait);
+			const auto task = co_await farm.take(r.parts[0], wait, r.peer);
 			Response nothing;
 			nothing.status = 204;
 			co_return task ? answer(*task) : nothing;
 		},
-		limits::message_bytes);
+		limits::message_bytes, Body::long_poll);
 	router.add(
 		"PUT", "/v1/leases/*/strip",
 		[&farm](Request& r) -> Awaitable<Response> {

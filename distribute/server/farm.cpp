@@ -42,6 +42,7 @@ Farm::Farm(boost::asio::io_context& c, const FarmSettings& s)
 	};
 	boost::asio::co_spawn(context, tick(), guarded);
 	boost::asio::co_spawn(context, assemble(), guarded);
+	boost::asio::co_spawn(context, keep_house(), guarded);
 }
 
 Farm::~Farm() {

@@ -21,7 +21,9 @@ namespace farm {
 struct FarmSettings {
 	fs::path spool;
 	Rules rules;
-	int threads = 2; ///< for checking strips and stitching frames
+	int threads = 2;       ///< for checking strips and stitching frames
+	double keep_days = 30; ///< jobs that have ended are removed after so many
+	double keep_bytes = 0; ///< and the oldest of them while the spool is larger; 0: whatever it is
 };
 
 /// A job as the farm has it.
@@ -57,7 +59,8 @@ public:
 	Awaitable<void> leave(WorkerId worker);
 	void drain(const WorkerId& worker, bool draining);
 	/// A strip for the worker, within `wait` seconds. Throws HttpError 404 if the worker has not said hello to this server.
-	Awaitable<std::optional<Task>> take(WorkerId worker, double wait);
+	/// Nothing is lent to a peer that has gone meanwhile.
+	Awaitable<std::optional<Task>> take(WorkerId worker, double wait, std::shared_ptr<Peer> peer);
 	/// Those of the leases that are to be dropped. 404 likewise.
 	std::vector<LeaseId> beat(const WorkerId& worker, const std::vector<LeaseId>& leases);
 	/// A strip's picture. Empty: taken; else why it changed nothing. Throws HttpError 422 if the file is not what `sha256` says.
@@ -87,6 +90,7 @@ private:
 	void note(Ledger::Work work);
 	void apply(const Changes& changes);
 	void wake(int how_many);
+	Awaitable<void> keep_house();
 	void enter(const JobRow& row);
 	void set_stage(Job& job, Stage stage, const std::string& error = "");
 	std::string place(const JobSpec& spec, int strip) const;

@@ -9,7 +9,18 @@
 
 namespace farm {
 
+// All workers make the same pixels as the first of those that are here.
 void Farm::welcome(const Hello& hello, const std::string& from) {
+	for (const auto& [id, other] : all_guests) {
+		if (id == hello.id)
+			continue;
+		if (other.hello.povray != hello.povray)
+			throw HttpError(409,
+				hello.name + " is turned away: its povray is '" + hello.povray + "', the farm's is '" + other.hello.povray + "'");
+		if (other.hello.probe != hello.probe)
+			throw HttpError(409, hello.name + " is turned away: its povray makes other pixels than that of " + other.hello.name);
+		break;
+	}
 	Guest& guest = all_guests[hello.id];
 	if (guest.hello.id.empty()) {
 		guest.since = wall_time();
@@ -40,7 +51,7 @@ void Farm::drain(const WorkerId& worker, bool draining) {
 	scheduler.drain(worker, draining);
 }
 
-Awaitable<std::optional<Task>> Farm::take(WorkerId worker, double wait) {
+Awaitable<std::optional<Task>> Farm::take(WorkerId worker, double wait, std::shared_ptr<Peer> peer) {
 	const Time until = now() + wait;
 	while (true) {
 		if (!scheduler.workers().count(worker))
@@ -54,6 +65,10 @@ Awaitable<std::optional<Task>> Farm::take(WorkerId worker, double wait) {
 				throw;
 			}
 			const auto found = all_jobs.find(lease->job);
+			if (peer->gone) {
+				co_await give_back(lease->id);
+				co_return std::nullopt;
+			}
 			if (!scheduler.lease(lease->id) || found == all_jobs.end())
 				continue; // cancelled meanwhile
 			const JobSpec& spec = found->second.row.spec;
@@ -68,11 +83,12 @@ Awaitable<std::optional<Task>> Farm::take(WorkerId worker, double wait) {
 			co_return task;
 		}
 		const double left = until - now();
-		if (left <= 0)
+		if (left <= 0 || peer->gone)
 			co_return std::nullopt;
 		auto bell = std::make_shared<Bell>(context);
 		sleepers.push_back(bell);
-		if (!co_await bell->wait(left))
+		peer->tell = [bell] { bell->ring(); };
+		if (!co_await bell->wait(left) || peer->gone)
 			sleepers.erase(std::remove(sleepers.begin(), sleepers.end(), bell), sleepers.end());
 	}
 }

@@ -23,6 +23,8 @@ const std::vector<Option> options = {
 	{"--tls-key", "FILE", "its key, PEM", ""},
 	{"--lease", "SECONDS", "a worker that is silent for so long loses its strips", "20"},
 	{"--check-every", "N", "one strip in N, and each worker's first, is rendered by two; 0: none", "32"},
+	{"--keep-days", "N", "jobs that have ended are removed after so long", "30"},
+	{"--keep-gb", "N", "and the oldest of them while the spool is larger; 0: whatever it is", "0"},
 	{"--help", "", "this", ""},
 };
 
@@ -51,6 +53,8 @@ int serve(const Arguments& arguments) {
 	settings.spool = arguments.get("--spool").empty() ? state_folder() / "spool" : fs::path(arguments.get("--spool"));
 	settings.rules.lease = static_cast<double>(arguments.number("--lease", 1, 86400));
 	settings.rules.check_every = static_cast<int>(arguments.number("--check-every", 0, 1000000));
+	settings.keep_days = static_cast<double>(arguments.number("--keep-days", 0, 100000));
+	settings.keep_bytes = 1e9 * static_cast<double>(arguments.number("--keep-gb", 0, 1000000));
 	ServerSettings http;
 	http.tokens = read_tokens(arguments.get("--token-file"));
 	http.tls_certificate = arguments.get("--tls-cert");
@@ -91,7 +95,9 @@ int serve(const Arguments& arguments) {
 	server.close();
 	std::error_code ignored;
 	fs::remove(farm.files().url(), ignored);
-	return 0;
+	farm.book().write([](Database&) {}); // all that was queued before is on the disk
+	// Coroutines that wait for ever are not worth taking apart.
+	std::_Exit(0);
 }
 
 } // namespace

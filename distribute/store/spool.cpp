@@ -55,4 +55,31 @@ void Spool::remove_job(JobId id) const {
 	fs::remove_all(job(id), ignored);
 }
 
+std::int64_t Spool::bytes() const {
+	std::int64_t sum = 0;
+	std::error_code ignored;
+	for (fs::recursive_directory_iterator at(root, fs::directory_options::skip_permission_denied, ignored), end; at != end;
+		 at.increment(ignored))
+		if (const auto size = at->is_regular_file(ignored) ? at->file_size(ignored) : 0; !ignored)
+			sum += static_cast<std::int64_t>(size);
+	return sum;
+}
+
+void Spool::sweep(const std::set<std::string>& bundles, double seconds) const {
+	const auto old = fs::file_time_type::clock::now() -
+					 std::chrono::duration_cast<fs::file_time_type::duration>(std::chrono::duration<double>(seconds));
+	std::set<std::string> needed;
+	for (const auto& entry : fs::directory_iterator(root / "bundles")) {
+		if (bundles.count(entry.path().stem()) || entry.last_write_time() > old) {
+			for (const auto& file : parse_object(read_file(entry.path())).get<Bundle>().files)
+				needed.insert(file.sha256);
+		} else {
+			fs::remove(entry.path());
+		}
+	}
+	for (const auto& entry : fs::recursive_directory_iterator(root / "files"))
+		if (entry.is_regular_file() && entry.last_write_time() <= old && !needed.count(entry.path().filename()))
+			fs::remove(entry.path());
+}
+
 } // namespace farm

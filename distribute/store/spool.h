@@ -17,6 +17,7 @@
 
 #include <memory>
 #include <optional>
+#include <set>
 
 namespace farm {
 
@@ -46,6 +47,12 @@ public:
 	fs::path strip(JobId id, int strip, const std::string& pixels, const std::string& suffix) const;
 	fs::path frame(JobId id, const std::string& picture) const { return job(id) / "frames" / picture; }
 	void remove_job(JobId id) const;
+
+	/// What all of it takes on the disk.
+	std::int64_t bytes() const;
+	/// Removes bundles that are not among these, and files that no bundle has any more, if they have lain there for so many
+	/// seconds.
+	void sweep(const std::set<std::string>& bundles, double seconds) const;
 
 private:
 	fs::path root;

@@ -57,8 +57,8 @@ int work(const Arguments& arguments) {
 	::signal(SIGPIPE, SIG_IGN);
 	Worker worker(settings);
 	std::thread([&worker, signals] {
-		for (int s = 0; sigwait(&signals, &s) == 0;)
-			worker.stop(s == SIGTERM);
+		for (int s = 0, count = 0; sigwait(&signals, &s) == 0;)
+			worker.stop(s == SIGTERM && ++count == 1);
 	}).detach();
 	worker.run();
 	return 0;

@@ -4,6 +4,7 @@
 #include "distribute/common/error.h"
 #include "distribute/common/hash.h"
 #include "distribute/render/povray.h"
+#include "distribute/render/probe.h"
 #include "distribute/stitch/picture.h"
 
 #include <nlohmann/json.hpp>
@@ -38,6 +39,7 @@ Worker::Worker(const WorkerSettings& s) : settings(s), cache(s.cache) {
 	self.name = settings.name;
 	self.slots = settings.slots;
 	self.povray = povray_version(settings.povray);
+	self.probe = probe(settings.povray);
 	std::srand(static_cast<unsigned>(std::stoul(self.id.substr(0, 7), nullptr, 16)));
 }
 
@@ -67,8 +69,19 @@ bool Worker::lost(std::int64_t lease) {
 }
 
 void Worker::hello(Client& client) {
-	const json answer = client.post("/v1/workers", self);
-	beat_every = std::clamp(answer.value("lease_seconds", 20.0) / 4, 0.2, 30.0);
+	try {
+		const json answer = client.post("/v1/workers", self);
+		beat_every = std::clamp(answer.value("lease_seconds", 20.0) / 4, 0.2, 30.0);
+	} catch (const Refused& e) {
+		if (e.status == 409) { // turned away
+			{
+				const std::lock_guard lock(mutex);
+				refusal = e.what();
+			}
+			stop(false);
+		}
+		throw;
+	}
 }
 
 void Worker::run() {
@@ -104,6 +117,8 @@ void Worker::run() {
 		Client(settings.server).remove("/v1/workers/" + self.id);
 	} catch (const Error&) { // its leases run out by themselves
 	}
+	if (!refusal.empty())
+		throw Error(refusal);
 }
 
 void Worker::keep_touch() {

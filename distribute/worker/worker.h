@@ -29,7 +29,7 @@ struct WorkerSettings {
 class Worker {
 public:
 	explicit Worker(const WorkerSettings& settings);
-	/// Until it is told to stop or has been idle for long enough. Call once.
+	/// Until it is told to stop or has been idle for long enough. Call once. Throws Refused or Error if the server turns it away.
 	void run();
 	/// Takes nothing new. Strips under way go on for `grace` seconds if `finish`, else they are given back at once. From any
 	/// thread.
@@ -57,6 +57,7 @@ private:
 	std::set<std::int64_t> held, dropped;
 	Clock::time_point deadline = Clock::time_point::max(), last_work = Clock::now();
 	int busy = 0;
+	std::string refusal; ///< why the server turned us away
 	bool over = false;
 };
 

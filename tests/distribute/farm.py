@@ -67,7 +67,7 @@ def povray(ini, folder, *words):
     empty = WORK + "/empty.ini"
     with open(empty, "w") as f:
         f.write("Verbose=Off\n")
-    done = subprocess.run([BIN + "/povray", ini, "+L" + include_folder(), "-D", "+WT2", *words], cwd=folder, capture_output=True, text=True,
+    done = subprocess.run([BIN + "/povray", ini, "+L" + include_folder(), "-D", "+WT2", "Reproducible=on", *words], cwd=folder, capture_output=True, text=True,
                           env=dict(ENV, POVINI=empty))
     assert done.returncode == 0, done.stderr[-2000:]
 

@@ -49,7 +49,7 @@ def says(words, text):
 
 says(["nosuch.pov"], "there is no scene nosuch.pov")
 says(["film.ini", "--frames", "3-2"], "the last of --frames is '2'")
-says(["film.ini", "--strips", "150"], "a strip has at least 32 rows")
+says(["film.ini", "--strips", "151"], "a frame has 150 rows")
 says(["film.ini", "Final_Frame=0"], "Final_Frame is 0, below Initial_Frame 1")
 says(["film.ini", "+SR10"], "Start_Row does not work in a farm")
 says(["film.ini", "+FT"], "Output_File_Type is 'T'")

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "distribute/scene/dryrun.h"
+
+#include "distribute/common/error.h"
+#include "distribute/common/files.h"
+#include "distribute/render/povray.h"
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <sstream>
+
+namespace farm {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+fs::path reads_library() {
+	const fs::path here = program_folder();
+	for (const char* place : {"bhfarm-reads.so", "../lib/bhfarm/bhfarm-reads.so"})
+		if (fs::exists(here / place))
+			return (here / place).lexically_normal();
+	throw Error("bhfarm-reads.so is missing beside bhfarm; build or install again");
+}
+
+/// The scene where it lies, with everything said about it so far.
+Command scene_command(const SettledScene& scene, std::string ini, const fs::path& povray, const fs::path& scratch) {
+	for (const auto& library : scene.libraries)
+		ini += ini_line({"Library_Path", library.string()}) + "\n";
+	write_durably(scratch / "dry.ini", ini + "Output_To_File=Off\n");
+	Command command = povray_command(povray, scratch / "dry.ini", scratch);
+	command.folder = scene.scene.parent_path();
+	command.log = scratch / "log";
+	return command;
+}
+
+std::string flat(const std::string& text) {
+	std::string line;
+	for (const char c : text)
+		if (const char d = c == '\n' || c == '\r' || c == '\t' ? ' ' : c; d != ' ' || (!line.empty() && line.back() != ' '))
+			line += d;
+	return line;
+}
+
+double since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+} // namespace
+
+Parsed parse(const SettledScene& scene, int frame, const fs::path& povray) {
+	const ScratchFolder scratch(fs::temp_directory_path());
+	const fs::path list = scratch.path() / "reads";
+	std::string ini = povray_ini(scene.spec, frame) + "Antialias=Off\nQuality=0\n";
+	// One pixel. 1 would mean all of them.
+	if (scene.spec.height > 1)
+		ini += "Start_Row=" + std::to_string(scene.spec.height) + "\n";
+	if (scene.spec.width > 1)
+		ini += "Start_Column=" + std::to_string(scene.spec.width) + "\n";
+	Command command = scene_command(scene, ini, povray, scratch.path());
+	command.environment["LD_PRELOAD"] = reads_library();
+	command.environment["BHFARM_READS"] = list;
+	const auto start = Clock::now();
+	const int code = run(command);
+	Parsed parsed;
+	parsed.seconds = since(start);
+	const std::string log = fs::exists(command.log) ? read_file(command.log) : "";
+	if (code != 0) {
+		std::string why = error_line(log, code);
+		// POV-Ray does not say which it did not like.
+		if (why.rfind("Failed to parse", 0) == 0)
+			for (const auto& option : scene.spec.options)
+				why += (why.back() == 'e' ? ": one of " : ", ") + option;
+		throw Error(why);
+	}
+	parsed.said = flat(log);
+	std::istringstream lines(fs::exists(list) ? read_file(list) : "");
+	for (std::string line; std::getline(lines, line);)
+		if (line != scratch.path() / "dry.ini")
+			parsed.reads.insert(line);
+	return parsed;
+}
+
+double frame_time(const SettledScene& scene, int frame, const fs::path& povray, double parse_seconds, double patience) {
+	const ScratchFolder scratch(fs::temp_directory_path());
+	SettledScene small = scene;
+	constexpr int smaller = 8;
+	small.spec.width = std::max(1, scene.spec.width / smaller);
+	small.spec.height = std::max(1, scene.spec.height / smaller);
+	const double pixels = double(scene.spec.width) * scene.spec.height / (double(small.spec.width) * small.spec.height);
+	const auto start = Clock::now();
+	Process process(scene_command(small, povray_ini(small.spec, frame), povray, scratch.path()));
+	if (!process.over(parse_seconds + patience))
+		process.signal(SIGKILL);
+	process.over(-1);
+	return std::max(0.0, since(start) - parse_seconds) * pixels;
+}
+
+} // namespace farm

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+/// A scene tried out before it becomes a job.
+#ifndef FARM_DRYRUN_H
+#define FARM_DRYRUN_H
+
+#include "distribute/scene/settle.h"
+
+#include <set>
+
+namespace farm {
+
+struct Parsed {
+	std::set<std::string> reads; ///< the files that were read, as POV-Ray named them
+	std::string said;            ///< what povray printed, its lines' breaks and blanks as single blanks
+	double seconds = 0;
+};
+
+/// Parses one frame and renders one pixel of it without its textures' cost. Throws Error with POV-Ray's own words if it does not
+/// parse.
+Parsed parse(const SettledScene& scene, int frame, const std::filesystem::path& povray);
+
+/// What one core needs for a frame, without parsing: from a picture of an eighth of the width and height, which is given up after
+/// `patience` seconds (it then needs at least what comes of those). Seconds.
+double frame_time(
+	const SettledScene& scene, int frame, const std::filesystem::path& povray, double parse_seconds, double patience);
+
+} // namespace farm
+#endif

@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: AGPL-3.0-or-later
+"""Runs each curl line of docs/PROTOCOL.md; then what a server must refuse: no token, a wrong one, bodies that are too long, damaged or late."""
+import hashlib
+import json
+import os
+import socket
+import struct
+import subprocess
+import time
+import zlib
+
+from farm import BIN, ENV, WORK, Server, bhfarm, wait
+
+TOKEN = bhfarm("token", "new").stdout.strip()
+assert len(TOKEN) == 64
+with open(WORK + "/token", "w") as f:
+    f.write(TOKEN + "\n")
+server = Server("--token-file", WORK + "/token", "--lease", "5")
+
+
+def sha(data):
+    return hashlib.sha256(data).hexdigest()
+
+
+scene = b"camera { }\n"
+bundle = {"files": [{"bytes": len(scene), "name": "scene.pov", "sha256": sha(scene)}], "folder": ""}
+bundle_id = sha(json.dumps(bundle, separators=(",", ":"), sort_keys=True).encode())
+job = {"name": "x", "bundle": bundle_id, "options": ["Input_File_Name=scene.pov"], "width": 8, "height": 4, "animation": True, "first": 1, "last": 2, "step": 1,
+       "digits": 1, "format": "png", "bits": 8, "strip_rows": 4, "film_rate": 25}
+
+
+def png(width, height, grey):
+    """A PNG by the book."""
+
+    def chunk(kind, body):
+        return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
+    rows = (b"\0" + bytes([grey] * 3 * width)) * height
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
+
+
+strip = png(8, 4, 100)
+for name, data in (("bundle.json", json.dumps(bundle).encode()), ("job.json", json.dumps(job).encode()), ("scene.pov", scene), ("strip.png", strip)):
+    with open(WORK + "/" + name, "wb") as f:
+        f.write(data)
+variables = {"S": server.url, "T": TOKEN, "FILE": sha(scene), "BUNDLE": bundle_id, "STRIP": sha(strip)}
+ME = "/v1/workers/a-worker-of-mine"
+
+
+def ask(*a, **k):
+    return server.ask(*a, token=TOKEN, **k)
+
+
+def curl(line):
+    return subprocess.run(["bash", "-c", line], cwd=WORK, env=dict(ENV, **variables), capture_output=True)
+
+
+def take():
+    status, task = ask(ME + "/take", {"wait": 5})
+    assert status == 200, (status, task)
+    return str(task["lease"])
+
+
+root = os.path.dirname(os.path.abspath(__file__)) + "/../.."
+lines = [l.strip() for l in open(root + "/docs/PROTOCOL.md") if l.startswith("    curl ")]
+known = subprocess.run(["grep", "-rhoE", r'router.add\("[A-Z]+", "[^"]+"', root + "/distribute/server"], capture_output=True, text=True).stdout.split("\n")
+assert len(lines) >= 25
+answers = {}
+for line in lines:
+    if "$L" in line and ("/failure" in line or "/return" in line):
+        variables["L"] = take()
+    if line.endswith("/drain"): # before it gets nothing more: the rest of the film
+        while ask("/v1/jobs/" + variables["J"])[1]["strips_done"] < 2:
+            lease = take()
+            assert ask("/v1/leases/%s/strip?sha256=%s" % (lease, sha(strip)), raw=strip, method="PUT")[1]["accepted"]
+        wait(lambda: ask("/v1/jobs/" + variables["J"])[1]["stage"] == "done", "the film")
+    done = curl(line)
+    if "/v1/events" in line:
+        assert done.returncode == 28 and b"retry" in done.stdout, done # curl's word for the end of its patience
+        continue
+    assert done.returncode == 0, "%s\n%s" % (line, done.stderr.decode())
+    answers[line] = done.stdout
+    if line.endswith("/v1/jobs -d @job.json"):
+        variables["J"] = str(json.loads(done.stdout)["job"])
+    if "/take" in line:
+        task = json.loads(done.stdout)
+        assert task["rows"] == 4 and task["spec"]["options"] == job["options"], task
+        variables["L"] = str(task["lease"])
+    if "/strip?" in line:
+        assert json.loads(done.stdout)["accepted"]
+        late = json.loads(curl(line).stdout) # once more
+        assert not late["accepted"] and "has ended" in late["why"], late
+
+
+def answer(part):
+    return next(a for l, a in answers.items() if part in l)
+
+
+assert json.loads(answer("@bundle.json")) == {"bundle": bundle_id, "missing": [sha(scene)]}
+assert answer("frames/x1.png")[:8] == b"\x89PNG\r\n\x1a\n"
+assert b"ftyp" in answer("/film")[:16]
+assert json.loads(answer("/pictures"))["pictures"] == ["x1.png", "x2.png"]
+assert json.loads(answer("/log"))["failures"][0]["line"] == "Parse Error: ..."
+assert not os.path.exists(server.spool + "/jobs/" + variables["J"])
+told = " ".join(lines)
+for route in known:
+    path = route.split('"')[3] if route else ""
+    last = path.rsplit("/", 1)[-1]
+    assert last in ("", "*", "cancel", "retry") or last in told, "PROTOCOL.md has no line for " + path
+
+# Refusals: one line each, and the server goes on.
+LONG = b"x" * (9 << 20)
+assert server.ask("/health")[0] == 200
+for path in ("/v1/jobs", "/v1/workers", "/v1/events", "/v1/files/" + sha(scene)):
+    for token in (None, "wrong", TOKEN[:-1], TOKEN + "0"):
+        status, got = server.ask(path, token=token)
+        assert status == 401 and "token" in got["error"], (path, token, status, got)
+for path, body, method, expected in (
+        ("/v1/nothing", None, None, 404), ("/v1/jobs/99", None, None, 404), ("/v1/jobs/x", None, None, 404), ("/v1/jobs", None, "DELETE", 405),
+        ("/v1/jobs", b"", None, 400), ("/v1/jobs", b"[]", None, 400), ("/v1/jobs", b"{\xff}", None, 400), ("/v1/jobs", LONG, None, 413), ("/v1/jobs", b"{}", None, 400),
+        ("/v1/files/" + "0" * 64, b"x", "PUT", 400), ("/v1/files/..%2f..%2fetc", b"x", "PUT", 404), ("/v1/files/" + sha(b"none"), None, None, 404),
+        ("/v1/bundles", json.dumps({"folder": "..", "files": []}).encode(), None, 400), ("/v1/leases/1/strip?sha256=x", b"x", "PUT", 400),
+        ("/v1/leases/0/return", b"", "POST", 404), ("/v1/workers/nobody-here/take", b'{"wait": 1}', None, 404), ("/v1/workers/%00/take", b"{}", None, 400)):
+    status, got = ask(path, raw=body, method=method)
+    assert status == expected and "\n" not in got["error"], (path, status, got)
+
+# Strips that are damaged, of the wrong size, or no picture: none is taken, and the lease's strip goes on.
+ask("/v1/bundles", bundle)
+ask("/v1/files/" + sha(scene), raw=scene, method="PUT")
+assert ask("/v1/workers", {"id": "a-worker-of-mine", "name": "x", "slots": 1})[0] == 201
+assert ask("/v1/workers", {"id": "another-worker", "name": "y", "slots": 1, "povray": "3.8"})[0] == 409
+number = ask("/v1/jobs", dict(job, animation=False, first=0, last=0, film_rate=0))[1]["job"]
+lease = take()
+where = "/v1/leases/%s/strip?sha256=" % lease
+assert ask(where + sha(strip), raw=strip[:-1], method="PUT")[0] == 422
+assert ask(where + sha(strip), raw=strip + b"x", method="PUT")[0] == 422
+broken = strip[:-20] + b"\0" + strip[-19:]
+got = ask(where + sha(broken), raw=broken, method="PUT")[1]
+assert got["accepted"], got # as a failure of the worker's
+wait(lambda: ask("/v1/jobs/%d" % number)[1]["strips_out"] == 0, "the strip to come back")
+other = png(8, 5, 100)
+lease = take()
+ask("/v1/leases/%s/strip?sha256=%s" % (lease, sha(other)), raw=other, method="PUT")
+assert ask("/v1/jobs/%d" % number)[1]["strips_done"] == 0
+failures = ask("/v1/jobs/%d/log" % number)[1]["failures"]
+assert "no good picture" in failures[0]["line"] and "8x5" in failures[1]["line"], failures
+
+# A worker whose connection breaks while it waits gets nothing lent: the strip is there for the next.
+ask("/v1/jobs/%d" % number, method="DELETE")
+ask("/v1/workers", {"id": "gone-worker", "name": "z", "slots": 1})
+s = socket.create_connection(("127.0.0.1", server.port))
+body = b'{"wait": 60}'
+s.sendall(b"POST /v1/workers/gone-worker/take HTTP/1.1\r\nHost: x\r\nAuthorization: Bearer %s\r\nContent-Length: %d\r\n\r\n%s" % (TOKEN.encode(), len(body), body))
+time.sleep(0.3)
+s.close()
+time.sleep(0.3)
+number = ask("/v1/jobs", dict(job, client_key="k"))[1]["job"]
+assert ask("/v1/jobs", dict(job, client_key="k"))[1]["job"] == number
+time.sleep(0.3)
+assert ask("/v1/jobs/%d" % number)[1]["strips_out"] == 0
+# Garbage, and half a request, hurt nobody.
+for text in (b"\0" * 100, b"GET", b"GET / HTTP/1.1\r\n" + b"A: " + b"x" * 100000, b"PUT /v1/files/%s HTTP/1.1\r\nAuthorization: Bearer %s\r\nContent-Length: 99\r\n\r\nx" % (b"0" * 64, TOKEN.encode())):
+    s = socket.create_connection(("127.0.0.1", server.port))
+    s.sendall(text)
+    s.close()
+assert server.ask("/health")[0] == 200
+assert server.process.poll() is None
+wait(lambda: os.listdir(server.spool + "/incoming") == [], "incoming to be empty")
+open_to_all = subprocess.run([BIN + "/bhfarm-server", "--listen", "0.0.0.0:0", "--spool", WORK + "/s2"], env=ENV, capture_output=True, text=True)
+assert open_to_all.returncode == 1 and "--token-file" in open_to_all.stderr, open_to_all.stderr
+taken = subprocess.run([BIN + "/bhfarm-server", "--listen", "127.0.0.1:%d" % server.port, "--spool", WORK + "/s3"], env=ENV, capture_output=True, text=True)
+assert taken.returncode == 1 and "Address already in use" in taken.stderr and taken.stderr.count("\n") == 1, taken.stderr
+locked = subprocess.run([BIN + "/bhfarm-server", "--listen", "127.0.0.1:0", "--spool", server.spool], env=ENV, capture_output=True, text=True)
+assert locked.returncode == 1 and "another bhfarm-server" in locked.stderr, locked.stderr
+print("%d lines of PROTOCOL.md; refusals" % len(lines))
