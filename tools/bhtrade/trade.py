@@ -138,15 +138,16 @@ class Trade:
 				self.add(Setting(method, tolerance, radius))
 		self.take_times(self.rows)
 		best = self.choose()
-		# A smaller sphere has fewer rays in it, if the camera is outside.
+		# A smaller sphere has fewer rays in it, if the camera is outside. Not worth a change unless it shows.
 		if best and self.goal == "pixels" and self.far:
 			r = best.setting.effect_radius or self.own_radius()
-			for smaller in [q for q in reversed(RADII) if q <= 0.35 * r][:4:2]:
-				row = self.add(Setting(best.setting.method or self.holes[0].method, best.setting.tolerance or self.holes[0].tolerance, smaller))
+			for smaller in [q for q in reversed(RADII) if q < 0.9 * r][:4]:
+				row = self.add(Setting(*self.key(best.setting)[:2], smaller))
 				self.take_times([row])
-				if row.error.most > self.limit:
+				if row.error.most > self.limit or row.seconds > (1 - NOISE) * best.seconds:
 					break
-		return self.choose()
+				best = row
+		return best
 
 	def take_times(self, rows):
 		"""The least of three, turn and turn about."""
