@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "blackhole/chords.h"
 
+#include "blackhole/turn.h"
+
 #include <algorithm>
-#include <iterator>
 
 namespace blackhole {
 namespace {
-
-// Chords get half of the tolerance (the integrator keeps well inside the other half), less a margin for
-// curvature that is not constant along a chord.
-constexpr double share = 0.5 / 1.25;
 
 // The rule takes the curvature to be that of all of a chord. Where one chord would take a ray past the hole and far out again,
 // all of the bend is in its middle: it strays by r_far / b there, which may be hundreds of tolerance * b. So no chord sweeps more
@@ -19,30 +16,11 @@ constexpr double widest = 1.8, slack = 0.35;
 // The most that an arc of several chords may sweep.
 constexpr double widest_arc = 0.7;
 
-// A ramp's first nodes, in N.
-constexpr double ramp_nodes[] = {1.0 / 128, 1.0 / 32, 1.0 / 8, 1.0 / 2, 1};
-constexpr int ramp_count = static_cast<int>(std::size(ramp_nodes));
-
-// Cosine and sine of a step's angle, at most 0.9, to the last digits: the series, for a fifth of what the general ones cost.
-void turn(double a, double& cosine, double& sine) {
-	const double q = a * a;
-	sine =
-		a *
-		(1 + q * (-1.0 / 6 + q * (1.0 / 120 + q * (-1.0 / 5040 +
-													  q * (1.0 / 362880 + q * (-1.0 / 39916800 +
-																				  q * (1.0 / 6227020800 - q / 1307674368e3)))))));
-	cosine =
-		1 + q * (-0.5 + q * (1.0 / 24 + q * (-1.0 / 720 +
-												q * (1.0 / 40320 + q * (-1.0 / 3628800 + q * (1.0 / 479001600 +
-																								 q * (-1.0 / 87178291200 +
-																										 q / 20922789888e3)))))));
-}
-
 } // namespace
 
 Chords::Chords(const Path& path, double tolerance, bool ramp)
-	: path_(path), tolerance_(tolerance), scale_(path.orbit().k * std::sqrt(1.5 * path.orbit().h / (8 * share * tolerance))),
-	  ramp_(ramp) {
+	: path_(&path), tolerance_(tolerance),
+	  scale_(path.orbit().k * std::sqrt(1.5 * path.orbit().h / (8 * chord_share * tolerance))), ramp_(ramp) {
 	const double far = std::max(path.orbit().r, 1 / path.nodes().back().u), b = path.orbit().h;
 	widest_ = widest + std::min(slack * tolerance * b * b / far, 12 * b / far);
 	load(0);
@@ -64,7 +42,7 @@ Chords::Chords(const Path& path, double tolerance, bool ramp)
 
 // dN/ds at a node.
 double Chords::density(std::size_t node) const {
-	const double u = path_.nodes()[node].u, b = path_.orbit().h;
+	const double u = path_->nodes()[node].u, b = path_->orbit().h;
 	return scale_ * u / std::sqrt(std::sqrt(1 + b * b * u * u * u));
 }
 
@@ -73,7 +51,7 @@ void Chords::load(std::size_t i) {
 		piece_n_ += 0.5 * (d0_ + d1_) * length_;
 	i_ = i;
 	t_ = 0;
-	const std::vector<Node>& nodes = path_.nodes();
+	const std::vector<Node>& nodes = path_->nodes();
 	d0_ = i == 0 ? density(0) : d1_;
 	d1_ = density(i + 1);
 	length_ = nodes[i + 1].s - nodes[i].s;
@@ -84,21 +62,21 @@ void Chords::look() {
 	if (looked_ == i_)
 		return;
 	looked_ = i_;
-	const Node &from = path_.nodes()[i_], &to = path_.nodes()[i_ + 1];
+	const Node &from = path_->nodes()[i_], &to = path_->nodes()[i_ + 1];
 	curve_ = Piece(from, to);
-	cosine_ = std::cos(path_.orbit().k * from.s);
-	sine_ = std::sin(path_.orbit().k * from.s);
+	cosine_ = std::cos(path_->orbit().k * from.s);
+	sine_ = std::sin(path_->orbit().k * from.s);
 }
 
 // The point where it stands.
 void Chords::place() {
 	look();
-	const Orbit& orbit = path_.orbit();
-	const double u = path_.u_at({i_, t_}, curve_);
+	const Orbit& orbit = path_->orbit();
+	const double u = path_->u_at({i_, t_}, curve_);
 	const double since = orbit.k * t_ * length_;
 	double c, s;
 	turn(since, c, s);
-	phi_ = orbit.k * path_.nodes()[i_].s + since;
+	phi_ = orbit.k * path_->nodes()[i_].s + since;
 	r_ = 1 / u;
 	place_ = {r_ * (c * cosine_ - s * sine_), r_ * (s * cosine_ + c * sine_)};
 	point_ = orbit.to_space(place_);
@@ -106,15 +84,15 @@ void Chords::place() {
 
 void Chords::place_end() {
 	look();
-	r_ = 1 / path_.nodes().back().u;
-	phi_ = path_.swept();
+	r_ = 1 / path_->nodes().back().u;
+	phi_ = path_->swept();
 	place_ = {r_ * std::cos(phi_), r_ * std::sin(phi_)};
-	point_ = path_.end();
+	point_ = path_->end();
 }
 
 // In the plane, where it stands; of the length that unit energy gives it.
 Vec2 Chords::velocity() const {
-	const double b = path_.orbit().h, out = -std::max(b, 1.0) * curve_.slope(t_) / length_, across = b / r_;
+	const double b = path_->orbit().h, out = -std::max(b, 1.0) * curve_.slope(t_) / length_, across = b / r_;
 	const double c = place_.x / r_, s = place_.y / r_;
 	return {out * c - across * s, out * s + across * c};
 }
@@ -123,14 +101,14 @@ Vec2 Chords::velocity() const {
 double Chords::target(int count) const {
 	if (!ramp_)
 		return count;
-	return count <= ramp_count ? ramp_nodes[count - 1] : count - ramp_count + 1;
+	return count <= ramp_count ? ramp_corners[count - 1] : count - ramp_count + 1;
 }
 
 // Moves to where N reaches target or phi most, or to the end. Whether phi ended it: then N counts on from there.
 bool Chords::advance(double target, double most) {
-	const double k = path_.orbit().k;
-	while (piece_n_ + 0.5 * (d0_ + d1_) * length_ <= target && k * path_.nodes()[i_ + 1].s <= most) {
-		if (i_ + 2 >= path_.nodes().size()) {
+	const double k = path_->orbit().k;
+	while (piece_n_ + 0.5 * (d0_ + d1_) * length_ <= target && k * path_->nodes()[i_ + 1].s <= most) {
+		if (i_ + 2 >= path_->nodes().size()) {
 			t_ = 1;
 			ended_ = true;
 			return false;
@@ -145,7 +123,7 @@ bool Chords::advance(double target, double most) {
 		return false;
 	}
 	const double t = 2 * c / (d0_ + std::sqrt(std::max(0.0, d0_ * d0_ + 2 * (d1_ - d0_) * c)));
-	const double wide = k * length_ > 0 ? (most / k - path_.nodes()[i_].s) / length_ : 2;
+	const double wide = k * length_ > 0 ? (most / k - path_->nodes()[i_].s) / length_ : 2;
 	if (wide < t) {
 		t_ = std::clamp(wide, 0.0, 1.0);
 		n_ = piece_n_ + (d0_ + 0.5 * (d1_ - d0_) * t_) * t_ * length_;
@@ -186,7 +164,7 @@ bool Chords::next(Arc& arc, int chords) {
 	arc.from = point_;
 	arc.chords = chords;
 	// An arc that sweeps much is a poor triangle: then one chord is better. There are few of them.
-	if (path_.swept() > phi + widest_arc && chords > 1) {
+	if (path_->swept() > phi + widest_arc && chords > 1) {
 		const std::size_t i = i_;
 		const double t = t_, n = n_, piece_n = piece_n_, d0 = d0_, d1 = d1_, l = length_;
 		const int count = count_;

@@ -12,6 +12,14 @@
 
 namespace blackhole {
 
+/// Chords get half of the tolerance (the method keeps well inside the other half), less a margin for curvature that is not
+/// constant along a chord.
+constexpr double chord_share = 0.5 / 1.25;
+
+/// Where a ramp's first corners lie, in N.
+constexpr double ramp_corners[] = {1.0 / 128, 1.0 / 32, 1.0 / 8, 1.0 / 2, 1};
+constexpr int ramp_count = static_cast<int>(sizeof ramp_corners / sizeof *ramp_corners);
+
 struct Chord {
 	Vec3 from, to;       ///< on the path
 	Mark at_from, at_to; ///< where on it: for Path::tangent()
@@ -36,8 +44,14 @@ public:
 	/// The next chord; false after the last. Chords of a ray that starts inside the horizon begin where it emerges.
 	bool next(Chord& chord);
 	/// The next so many chords as one, or a single one where the path is so straight that its width counts, not its bend;
-	/// false after the last. To walk them one by one after all, keep a copy from before.
+	/// false after the last. To walk them one by one after all, keep a bookmark from before.
 	bool next(Arc& arc, int chords);
+
+	/// Where the walk stands, and to go on from where it stood.
+	using Bookmark = Chords;
+	Bookmark bookmark() const { return *this; }
+	void go_to(const Bookmark& there) { *this = there; }
+	Vec3 tangent(const Mark& mark) const { return path_->tangent(mark); }
 
 private:
 	double density(std::size_t node) const;
@@ -48,7 +62,7 @@ private:
 	double target(int count) const;
 	Vec2 velocity() const;
 
-	const Path& path_;
+	const Path* path_;
 	double tolerance_, scale_, widest_;
 	std::size_t i_ = 0;      // the piece
 	double t_ = 0;           // where on it

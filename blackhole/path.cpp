@@ -15,27 +15,6 @@ constexpr double most_swept = 45;
 constexpr double most_swept_exactly = 18, least_b_exactly = 1e-6;
 constexpr std::size_t most_steps = 200000; // no method should come near it
 
-// Where on the piece u is reached, t in [0, 1]: exactly once, since steps are shorter than the path takes to turn round.
-// Newton, kept in a bracket.
-double crossing(const Piece& piece, double u) {
-	const double at0 = piece.at(0), at1 = piece.at(1);
-	const bool rising = at1 > at0;
-	// From the far end: a ray that grazes the sphere it starts on has a root at its start too.
-	double lo = 0, hi = 1, t = 1;
-	for (int i = 0; i < 60; i++) {
-		const double f = piece.at(t) - u;
-		((f > 0) == rising ? hi : lo) = t;
-		// No better than the rounding of the piece's own terms.
-		if (std::fabs(f) <= 1e-16 * std::max(std::fabs(at0), std::fabs(at1)) || hi - lo < 1e-16)
-			break;
-		double next = t - f / piece.slope(t);
-		if (!(next > lo && next < hi))
-			next = (lo + hi) / 2;
-		t = next;
-	}
-	return t;
-}
-
 } // namespace
 
 // Ends the path where u is reached between the node before and this one.

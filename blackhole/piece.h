@@ -6,6 +6,9 @@
 #ifndef BLACKHOLE_PIECE_H
 #define BLACKHOLE_PIECE_H
 
+#include <algorithm>
+#include <cmath>
+
 namespace blackhole {
 
 /// A point of a path: u = 1/r, w = du/ds and a = d2u/ds2 at the path's parameter s (orbit.h).
@@ -36,6 +39,27 @@ public:
 private:
 	double c0_, c1_, c2_, c3_, c4_, c5_;
 };
+
+/// Where on the piece u is reached, t in [0, 1]: exactly once, since steps are shorter than the path takes to turn round.
+/// Newton, kept in a bracket.
+inline double crossing(const Piece& piece, double u) {
+	const double at0 = piece.at(0), at1 = piece.at(1);
+	const bool rising = at1 > at0;
+	// From the far end: a ray that grazes the sphere it starts on has a root at its start too.
+	double lo = 0, hi = 1, t = 1;
+	for (int i = 0; i < 60; i++) {
+		const double f = piece.at(t) - u;
+		((f > 0) == rising ? hi : lo) = t;
+		// No better than the rounding of the piece's own terms.
+		if (std::fabs(f) <= 1e-16 * std::max(std::fabs(at0), std::fabs(at1)) || hi - lo < 1e-16)
+			break;
+		double next = t - f / piece.slope(t);
+		if (!(next > lo && next < hi))
+			next = (lo + hi) / 2;
+		t = next;
+	}
+	return t;
+}
 
 } // namespace blackhole
 

@@ -65,22 +65,79 @@ bool Bent_Path::Straight(const VECTOR from, const Vec3& direction, DBL length, I
 	return found;
 }
 
-// Through one effect sphere where nothing happens on the way: the closed form alone.
-bool Bent_Path::Leave(const Blackhole& hole, VECTOR from, Vec3& direction)
+// Out of the sphere: the way goes on straight from here.
+void Bent_Path::Leave(VECTOR from, const Vec3& direction)
+{
+	Assign_Vec3(state->chord.Direction, direction);
+	Assign_Vector(state->chord.Origin, from);
+}
+
+// A ray without a direction: black, and counted.
+bool Bent_Path::Nowhere(Intersection& isect)
+{
+	bent->counts.Undirected++;
+	state->captured = true;
+	isect.Depth = 0.0;
+	return End_With("horizon", false);
+}
+
+// In a scene of one hole and nothing to hit: only the direction in which the ray leaves is wanted.
+bool Bent_Path::To_Sky(VECTOR from, Vec3& direction, Intersection& isect)
 {
 	Bent_Segment& s = *state;
+	const Blackhole& hole = *bent->holes.Holes()[0];
+	const DBL R = hole.Settings().effect_radius;
+	Vec3 x = hole.To_Hole(from);
+	const DBL along = dot(x, direction), off = dot(x, x) - R * R, square = along * along - off;
+	s.moved = true;
+	isect.Depth = s.budget;
+	if(!(dot(direction, direction) > 0.5)) // not a number
+		return Nowhere(isect);
+	if((off < 0.0) || ((along < 0.0) && (square > 0.0)))
+	{
+		blackhole::Escape exit;
+		bent->counts.Entered++;
+		bool escaped = false;
+		if(off >= 0.0)
+		{
+			x = x + (off / (sqrt(square) - along)) * direction;
+			escaped = bent->holes.Atlas_Of(0).through(x, direction, exit);
+		}
+		(escaped ? bent->counts.Charted : bent->counts.Closed)++;
+		if(!escaped && !escape(x, direction, R, exit))
+		{
+			bent->counts.Captured++;
+			s.captured = true;
+			isect.Depth = 0.0;
+			return End_With("horizon", false);
+		}
+		bent->counts.Most_Swept = max(bent->counts.Most_Swept, exit.phi);
+		direction = exit.tangent;
+		VECTOR out;
+		hole.To_Scene(R * exit.at, out);
+		Leave(out, direction);
+	}
+	else
+		Leave(from, direction);
+	return End_With("sky", false);
+}
+
+// Through one effect sphere where nothing happens on the way: where the ray comes out is all.
+bool Bent_Path::Only_Exit(const Blackhole& hole, VECTOR from, Vec3& direction)
+{
+	Bent_Segment& s = *state;
+	const DBL R = hole.Settings().effect_radius;
 	blackhole::Escape exit;
 	s.moved = true;
-	s.captured = !escape(hole.To_Hole(from), direction, hole.Settings().effect_radius, exit);
+	s.captured = !escape(hole.To_Hole(from), direction, R, exit);
 	bent->counts.Closed++;
 	bent->counts.Captured += s.captured;
 	if(s.captured)
 		return false;
 	bent->counts.Most_Swept = max(bent->counts.Most_Swept, exit.phi);
 	direction = exit.tangent;
-	hole.To_Scene(hole.Settings().effect_radius * exit.at, from);
-	Assign_Vec3(s.chord.Direction, direction);
-	Assign_Vector(s.chord.Origin, from);
+	hole.To_Scene(R * exit.at, from);
+	Leave(from, direction);
 	return false;
 }
 
@@ -90,26 +147,34 @@ bool Bent_Path::Through(size_t index, VECTOR from, Vec3& direction, Intersection
 {
 	Bent_Segment& s = *state;
 	const Blackhole& hole = *bent->holes.Holes()[index];
-	const Shells& shells = bent->holes.Shells_Of(index);
+	const blackhole::Atlas& atlas = bent->holes.Atlas_Of(index);
 	Blackhole_Counts& counts = bent->counts;
 	// Only what the scene requires: no chords where nothing can be hit, filled, recorded or measured along them; and no path
 	// where its length is not wanted either, by something beyond the sphere that fades, or radiosity.
-	const bool chords = !shells.Empty() || s.volume || (bent->recorder != NULL) || (s.budget < BOUND_HUGE);
+	const bool chords = !bent->holes.Shells_Of(index).Empty() || s.volume || (bent->recorder != NULL) || (s.budget < BOUND_HUGE);
 	counts.Entered++;
 	if(!(dot(direction, direction) > 0.5)) // not a number
-	{
-		counts.Undirected++;
-		s.captured = true;
-		isect.Depth = 0.0;
-		return false;
-	}
+		return Nowhere(isect);
 	if(!chords && !bent->holes.Far_Objects())
-		return Leave(hole, from, direction);
+		return Only_Exit(hole, from, direction);
+	const Vec3 x = hole.To_Hole(from);
+	const bool ramp = !s.moved && !original.IsPrimaryRay();
+	blackhole::Route& route = bent->route;
+	if(route.solve(x, direction, atlas, ramp))
+	{
+		const DBL drift = route.drift();
+		s.drift = max(s.drift, drift);
+		counts.Charted++;
+		counts.Filled += s.volume;
+		counts.Most_Swept = max(counts.Most_Swept, route.swept());
+		counts.Drift = max(counts.Drift, drift);
+		counts.Drifted += (drift > hole.Tolerance);
+		if(chords && Along(route, index, false, isect, pre, post))
+			return true;
+		return Ended(hole, route, chords, true, from, direction, isect);
+	}
 	blackhole::Path& path = bent->path;
-	const bool solved = path.solve(hole.To_Hole(from), direction, hole.Settings());
-	const bool captured = (path.outcome() == blackhole::Outcome::captured);
-
-	counts.Captured += captured;
+	const bool solved = path.solve(x, direction, hole.Settings());
 	counts.Nudged += path.nudged();
 	counts.Paths++;
 	counts.Steps += path.nodes().size() - 1;
@@ -124,22 +189,26 @@ bool Bent_Path::Through(size_t index, VECTOR from, Vec3& direction, Intersection
 		counts.Drift = max(counts.Drift, drift);
 		counts.Drifted += (drift > hole.Tolerance);
 	}
-
 	if(chords)
 	{
-		// As many chords as turn by a third of a radian or so; a single one is no arc.
-		const int in_arc = min(16, int(0.12 / sqrt(hole.Tolerance)));
-		const bool every = (in_arc < 2) || s.volume || (bent->recorder != NULL) || (s.budget < BOUND_HUGE) || path.started_inside();
-		if(every ? Along_Chords(index, isect, pre, post) : Along_Arcs(index, in_arc, isect, pre, post))
+		blackhole::Chords walk(path, hole.Tolerance, ramp);
+		if(Along(walk, index, path.started_inside(), isect, pre, post))
 			return true;
-		if(*s.end != 0)
-			return false;
 	}
-	else if(!captured)
-		s.travelled += path.length() * hole.Radius;
+	return Ended(hole, path, chords, solved, from, direction, isect);
+}
+
+// At the end of the way through a sphere; Way: a Route or a Path.
+template<typename Way>
+bool Bent_Path::Ended(const Blackhole& hole, const Way& way, bool chords, bool solved, VECTOR from, Vec3& direction, Intersection& isect)
+{
+	Bent_Segment& s = *state;
+	if(*s.end != 0)
+		return false;
 	s.moved = true;
-	s.captured = captured;
-	if(captured)
+	s.captured = (way.outcome() == blackhole::Outcome::captured);
+	bent->counts.Captured += s.captured;
+	if(s.captured)
 	{
 		// The last chord before the horizon is the one in hand: its fog is in front of the black.
 		isect.Depth = 0.0;
@@ -153,10 +222,11 @@ bool Bent_Path::Through(size_t index, VECTOR from, Vec3& direction, Intersection
 		}
 		return false;
 	}
-	direction = path.end_tangent();
-	hole.To_Scene(path.end(), from);
-	Assign_Vec3(s.chord.Direction, direction);
-	Assign_Vector(s.chord.Origin, from);
+	if(!chords)
+		s.travelled += way.length() * hole.Radius;
+	direction = way.end_tangent();
+	hole.To_Scene(way.end(), from);
+	Leave(from, direction);
 	if(!solved)
 		s.end = "failed";
 	return false;

@@ -169,6 +169,8 @@ bool Bent_Path::Follow(Intersection& isect, const RayObjectCondition& pre, const
 		bent->counts.Captured++;
 		return End_With("horizon", false);
 	}
+	if(bent->holes.Only_Sky() && !s.volume && (bent->recorder == NULL) && (s.budget == HUGE_VAL))
+		return To_Sky(at, direction, isect);
 	size_t left = NO_HOLE;
 	for(int passages = 0; passages < MOST_PASSAGES; passages++)
 	{

@@ -59,12 +59,20 @@ class Bent_Path
 		bool Straight(const VECTOR from, const blackhole::Vec3& direction, DBL length, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
 		bool Through(size_t hole, VECTOR from, blackhole::Vec3& direction, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
 		bool Search(const VECTOR from, const blackhole::Vec3& direction, DBL length, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
+		bool Nearest_Of(const std::vector<unsigned int>& objects, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
 		bool Nothing_There(const VECTOR from, const blackhole::Vec3& direction, DBL length, Intersection& isect);
-		bool Leave(const Blackhole& hole, VECTOR from, blackhole::Vec3& direction);
-		bool Along_Chords(size_t hole, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
-		bool Along_Arcs(size_t hole, int chords, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
-		bool Along_Chord(const Chord_Run::Chord& chord, const std::vector<unsigned int>& objects, size_t hole, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post, bool& found);
-		bool Hit_Chord(const Chord_Run::Chord& chord, const blackhole::Vec3& direction, DBL length, const std::vector<unsigned int>& objects, const Blackhole& hole, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
+		bool Nowhere(Intersection& isect);
+		bool To_Sky(VECTOR from, blackhole::Vec3& direction, Intersection& isect);
+		bool Only_Exit(const Blackhole& hole, VECTOR from, blackhole::Vec3& direction);
+		void Leave(VECTOR from, const blackhole::Vec3& direction);
+		template<typename Way> bool Ended(const Blackhole& hole, const Way& way, bool chords, bool solved, VECTOR from, blackhole::Vec3& direction, Intersection& isect);
+		/// Along the whole of a walk (a Route or Chords): every chord, or arcs of so many chords first.
+		template<typename Walk> bool Along(Walk& walk, size_t hole, bool emerges, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
+		template<typename Walk> bool Along_Chords(Walk& walk, size_t hole, bool emerges, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
+		template<typename Walk> bool Along_Arcs(Walk& walk, size_t hole, int chords, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
+		void Skip(const blackhole::Arc& arc, const Blackhole& hole);
+		template<typename Walk> bool Along_Chord(const Walk& walk, const blackhole::Chord& marks, const Scene_Chord& chord, const std::vector<unsigned int>& objects, size_t hole, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post, bool& found);
+		bool Hit_Chord(const Scene_Chord& chord, const blackhole::Vec3& direction, DBL length, const std::vector<unsigned int>& objects, const Blackhole& hole, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
 		void Pass(const VECTOR from, const blackhole::Vec3& direction, DBL length);
 		void Emerge(const VECTOR point);
 		void Record(const VECTOR from, const VECTOR to, size_t hole, bool tested);

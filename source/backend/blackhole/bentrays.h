@@ -8,7 +8,7 @@
 #include "backend/frame.h"
 #include "backend/render/ray.h"
 #include "backend/blackhole/chordtree.h"
-#include "blackhole/path.h"
+#include "blackhole/route.h"
 
 namespace pov
 {
@@ -55,11 +55,9 @@ class Bent_Rays
 		Blackholes& holes;
 		Trace& trace;
 		Blackhole_Counts& counts;
-		blackhole::Path path;
-		Chord_Run run;
-		Chord_Candidates candidates;
-		std::vector<blackhole::Chords> walks;
-		std::vector<unsigned int> chosen;
+		blackhole::Route route;
+		blackhole::Path path; ///< of rays that the atlas does not have
+		std::vector<unsigned int> candidates, fewer, chosen; ///< of the arc, of a part of it, and of the chord in hand
 		std::vector<Bent_Segment *> pool; ///< states, by depth of recursion
 		size_t depth;
 		Recorder *recorder;                ///< of the pixel in hand; NULL: not kept

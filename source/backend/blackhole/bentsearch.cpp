@@ -61,6 +61,29 @@ struct Chord_Condition : public RayObjectCondition
 	const Blackhole *hole;
 };
 
+// The nearest hit of the chord in hand among these objects, nearer than isect.Depth.
+bool Bent_Path::Nearest_Of(const std::vector<unsigned int>& objects, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post)
+{
+	bool hit = false;
+	for(size_t i = 0; i < objects.size(); i++)
+	{
+		const ObjectPtr object = bent->holes.Tree().Object(objects[i]);
+		Intersection here;
+		if(!pre(state->chord, object, 0.0))
+			continue;
+		bent->counts.Object_Tests++;
+		if(bent->trace.FindIntersection(object, here, state->chord, post, isect.Depth) && (here.Depth < isect.Depth))
+		{
+			isect = here;
+			hit = true;
+		}
+	}
+	return hit;
+}
+
+// Few enough to be tried one by one on a straight leg, without a walk through POV-Ray's tree.
+static const size_t FEW = 4;
+
 // Looks for a hit on a straight piece of the way; on return the chord in hand is that piece, and a hit's depth is from its start.
 bool Bent_Path::Search(const VECTOR from, const Vec3& direction, DBL length, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post)
 {
@@ -70,7 +93,8 @@ bool Bent_Path::Search(const VECTOR from, const Vec3& direction, DBL length, Int
 	VEvaluateRay(s.chord.Origin, from, -back, s.chord.Direction);
 	isect.Depth = length + back;
 	const Chord_Condition condition(post, Least_Depth(back, bent->holes.Vague(), s.travelled, length), NULL);
-	const bool found = bent->trace.FindIntersection(isect, s.chord, pre, condition);
+	const std::vector<unsigned int>& outside = bent->holes.Outside();
+	const bool found = outside.size() <= FEW ? Nearest_Of(outside, isect, pre, condition) : bent->trace.FindIntersection(isect, s.chord, pre, condition);
 	Assign_Vector(s.chord.Origin, from);
 	isect.Depth = max(0.0, isect.Depth - back);
 	return found;
@@ -86,7 +110,7 @@ bool Bent_Path::Nothing_There(const VECTOR from, const Vec3& direction, DBL leng
 }
 
 // The same on a chord, among these objects only.
-bool Bent_Path::Hit_Chord(const Chord_Run::Chord& chord, const Vec3& direction, DBL length, const std::vector<unsigned int>& objects, const Blackhole& hole, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post)
+bool Bent_Path::Hit_Chord(const Scene_Chord& chord, const Vec3& direction, DBL length, const std::vector<unsigned int>& objects, const Blackhole& hole, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post)
 {
 	Bent_Segment& s = *state;
 	const DBL blind = bent->holes.Blind(), back = Back_Up(s.moved, s.travelled, blind);
@@ -95,27 +119,15 @@ bool Bent_Path::Hit_Chord(const Chord_Run::Chord& chord, const Vec3& direction, 
 	VEvaluateRay(s.chord.Origin, chord.from, -back, s.chord.Direction);
 	isect.Depth = length + back;
 	const Chord_Condition condition(post, Least_Depth(back, bent->holes.Vague(), s.travelled, length), near_horizon ? &hole : NULL);
-	bool hit = false;
-	for(size_t i = 0; i < objects.size(); i++)
-	{
-		const ObjectPtr object = bent->holes.Tree().Object(objects[i]);
-		Intersection here;
-		if(!pre(s.chord, object, 0.0))
-			continue;
-		bent->counts.Object_Tests++;
-		if(bent->trace.FindIntersection(object, here, s.chord, condition, isect.Depth) && (here.Depth < isect.Depth))
-		{
-			isect = here;
-			hit = true;
-		}
-	}
+	const bool hit = Nearest_Of(objects, isect, pre, condition);
 	Assign_Vector(s.chord.Origin, chord.from);
 	isect.Depth = max(0.0, isect.Depth - back);
 	return hit;
 }
 
 // One chord, among these objects. True if it is the ray's last: something is hit, or state->end is set.
-bool Bent_Path::Along_Chord(const Chord_Run::Chord& chord, const std::vector<unsigned int>& objects, size_t index, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post, bool& found)
+template<typename Walk>
+bool Bent_Path::Along_Chord(const Walk& walk, const blackhole::Chord& marks, const Scene_Chord& chord, const std::vector<unsigned int>& objects, size_t index, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post, bool& found)
 {
 	Bent_Segment& s = *state;
 	Blackhole_Counts& counts = bent->counts;
@@ -139,7 +151,7 @@ bool Bent_Path::Along_Chord(const Chord_Run::Chord& chord, const std::vector<uns
 		counts.Hits++;
 		// The quadratic through both tangents whose mean is the chord.
 		const DBL t = min(1.0, isect.Depth / chord_length);
-		const Vec3 from = bent->path.tangent(chord.at_from), to = bent->path.tangent(chord.at_to);
+		const Vec3 from = walk.tangent(marks.at_from), to = walk.tangent(marks.at_to);
 		s.tangent = unit((1.0 - 4.0 * t + 3.0 * t * t) * from + (3.0 * t * t - 2.0 * t) * to + (6.0 * t - 6.0 * t * t) * along);
 		s.has_tangent = true;
 		return true;
@@ -156,93 +168,107 @@ bool Bent_Path::Along_Chord(const Chord_Run::Chord& chord, const std::vector<uns
 	return false;
 }
 
-// Along every chord of the path that was solved last, a run of them at a time. False if nothing is hit; state->end may be set.
-bool Bent_Path::Along_Chords(size_t index, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post)
+// A chord, or an arc, as the scene has it.
+template<typename Piece>
+static void In_Scene(const Piece& piece, DBL bulge, const Blackhole& hole, Scene_Chord& chord)
+{
+	hole.To_Scene(piece.from, chord.from);
+	hole.To_Scene(piece.to, chord.to);
+	chord.bulge = bulge * hole.Radius;
+	chord.nearest = piece.nearest;
+	chord.farthest = piece.farthest;
+}
+
+// Along every chord. False if nothing is hit; state->end may be set. emerges: from inside the horizon.
+template<typename Walk>
+bool Bent_Path::Along_Chords(Walk& walk, size_t index, bool emerges, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post)
 {
 	const Blackhole& hole = *bent->holes.Holes()[index];
-	Chord_Run& run = bent->run;
-	Chord_Candidates& candidates = bent->candidates;
-	blackhole::Chords chords(bent->path, hole.Tolerance, !state->moved && !original.IsPrimaryRay());
 	blackhole::Chord c;
-	bool emerges = bent->path.started_inside(), found;
-	for(bool more = true; more; )
+	Scene_Chord chord;
+	bool found;
+	for(; walk.next(c); emerges = false)
 	{
-		run.Clear();
-		while((run.Count() < Chord_Run::MOST) && (more = chords.next(c)))
-		{
-			VECTOR start, end;
-			hole.To_Scene(c.from, start);
-			hole.To_Scene(c.to, end);
-			if(emerges)
-				Emerge(start);
-			emerges = false;
-			run.Add(start, end, c);
-		}
-		bent->holes.Tree().Find(run, bent->holes.Radii_Of(index), candidates);
-		for(int i = 0; i < run.Count(); i++)
-		{
-			candidates.Take(i);
-			if(Along_Chord(run[i], candidates.objects, index, isect, pre, post, found))
-				return found;
-		}
+		In_Scene(c, 0.0, hole, chord);
+		if(emerges)
+			Emerge(chord.from);
+		bent->holes.Tree().Find(chord, bent->holes.Radii_Of(index), bent->candidates);
+		if(Along_Chord(walk, c, chord, bent->candidates, index, isect, pre, post, found))
+			return found;
 	}
 	return false;
 }
 
-// The same where only hits count: arcs of several chords are looked at first, and their chords only where something may be.
-bool Bent_Path::Along_Arcs(size_t index, int chords, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post)
+// The same where only hits count: arcs of several chords are looked at first, of these shorter ones where something may be, and
+// chords only where it still may.
+template<typename Walk>
+bool Bent_Path::Along_Arcs(Walk& walk, size_t index, int chords, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post)
 {
-	Bent_Segment& s = *state;
 	const Blackhole& hole = *bent->holes.Holes()[index];
 	const Chord_Tree& tree = bent->holes.Tree();
-	Chord_Run& run = bent->run;
-	Chord_Candidates& candidates = bent->candidates;
-	blackhole::Chords walk(bent->path, hole.Tolerance, !s.moved && !original.IsPrimaryRay());
-	blackhole::Arc arc;
+	const Chord_Tree::Radii_List& radii = bent->holes.Radii_Of(index);
+	const int fewer = max(1, int(sqrt(DBL(chords)) + 0.5));
+	blackhole::Arc arc, part;
 	blackhole::Chord c;
+	Scene_Chord chord;
 	bool found;
-	for(bool more = true; more; )
+	for(;;)
 	{
-		run.Clear();
-		bent->walks.clear();
-		for(; run.Count() < Chord_Run::MOST; )
+		const typename Walk::Bookmark here = walk.bookmark();
+		if(!walk.next(arc, chords))
+			return false;
+		In_Scene(arc, arc.bulge, hole, chord);
+		tree.Find(chord, radii, bent->candidates);
+		if(bent->candidates.empty())
 		{
-			bent->walks.push_back(walk);
-			if(!(more = walk.next(arc, chords)))
-				break;
-			VECTOR start, end;
-			hole.To_Scene(arc.from, start);
-			hole.To_Scene(arc.to, end);
-			run.Add(start, end, arc.bulge * hole.Radius, arc);
+			Skip(arc, hole);
+			continue;
 		}
-		tree.Find(run, bent->holes.Radii_Of(index), candidates);
-		for(int i = 0; i < run.Count(); i++)
+		walk.go_to(here);
+		for(int i = 0; i < arc.chords; i += part.chords)
 		{
-			candidates.Take(i);
-			if(candidates.objects.empty())
+			const typename Walk::Bookmark there = walk.bookmark();
+			if(!walk.next(part, min(fewer, arc.chords - i)))
+				break;
+			In_Scene(part, part.bulge, hole, chord);
+			tree.Choose(chord, radii, bent->candidates, bent->fewer);
+			if(bent->fewer.empty())
 			{
-				const DBL length = run[i].length * hole.Radius;
-				bent->counts.Chords += run[i].chords;
-				bent->counts.Skipped += run[i].chords;
-				s.chords += run[i].chords;
-				s.travelled += length;
-				s.moved = true;
+				Skip(part, hole);
 				continue;
 			}
-			blackhole::Chords& one = bent->walks[i];
-			Chord_Run::Chord chord;
-			for(int j = 0; (j < run[i].chords) && one.next(c); j++)
+			walk.go_to(there);
+			for(int j = 0; (j < part.chords) && walk.next(c); j++)
 			{
-				hole.To_Scene(c.from, chord.from);
-				hole.To_Scene(c.to, chord.to);
-				chord.Set(c);
-				tree.Choose(chord, bent->holes.Radii_Of(index), candidates.objects, bent->chosen);
-				if(Along_Chord(chord, bent->chosen, index, isect, pre, post, found))
+				In_Scene(c, 0.0, hole, chord);
+				tree.Choose(chord, radii, bent->fewer, bent->chosen);
+				if(Along_Chord(walk, c, chord, bent->chosen, index, isect, pre, post, found))
 					return found;
 			}
 		}
 	}
-	return false;
 }
+
+// Nothing is near these chords.
+void Bent_Path::Skip(const blackhole::Arc& arc, const Blackhole& hole)
+{
+	bent->counts.Chords += arc.chords;
+	bent->counts.Skipped += arc.chords;
+	state->chords += arc.chords;
+	state->travelled += arc.length * hole.Radius;
+	state->moved = true;
+}
+
+template<typename Walk>
+bool Bent_Path::Along(Walk& walk, size_t index, bool emerges, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post)
+{
+	// As many chords as turn by a third of a radian or so; a single one is no arc.
+	const int in_arc = min(32, int(0.25 / sqrt(bent->holes.Holes()[index]->Tolerance)));
+	const bool every = (in_arc < 2) || state->volume || (bent->recorder != NULL) || (state->budget < BOUND_HUGE) || emerges;
+	return every ? Along_Chords(walk, index, emerges, isect, pre, post) : Along_Arcs(walk, index, in_arc, isect, pre, post);
+}
+
+template bool Bent_Path::Along(blackhole::Chords& walk, size_t index, bool emerges, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
+template bool Bent_Path::Along(blackhole::Route& walk, size_t index, bool emerges, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
 
 }

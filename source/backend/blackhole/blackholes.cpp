@@ -78,8 +78,17 @@ std::string Blackholes::Prepare(const SceneData& scene, TraceThreadData *thread,
 			vague = max(vague, Vague_Depth(*scene.objects[i]));
 		}
 	tree.Build(scene.objects, MIN_ISECT_DEPTH + vague);
+	std::vector<bool> inside(tree.Count(), false);
 	for(size_t h = 0; h < holes.size(); h++)
+	{
 		radii.push_back(tree.Radii_Around(*holes[h]));
+		atlases.push_back(blackhole::Atlas(holes[h]->Settings()));
+		for(size_t i = 0; i < inside.size(); i++)
+			inside[i] = inside[i] || (radii[h][i].second * holes[h]->Radius < holes[h]->Reach());
+	}
+	for(size_t i = 0; i < inside.size(); i++)
+		if(!inside[i])
+			outside.push_back((unsigned int)i);
 	for(size_t h = 0; h < holes.size(); h++)
 	{
 		const Blackhole& hole = *holes[h];

@@ -17,6 +17,7 @@
 #include "backend/blackhole/counts.h"
 #include "backend/blackhole/overrides.h"
 #include "backend/blackhole/reach.h"
+#include "blackhole/atlas.h"
 
 namespace pov
 {
@@ -55,9 +56,16 @@ class Blackholes
 		/// Whether there is something to hit that is not within reach of every hole.
 		bool Far_Objects() const { return far_objects; }
 		const Shells& Shells_Of(size_t hole) const { return shells[hole]; }
+		/// The orbits around a hole, charted for its settings.
+		const blackhole::Atlas& Atlas_Of(size_t hole) const { return atlases[hole]; }
+		/// Whether there is one hole and nothing to hit.
+		bool Only_Sky() const { return tree.Empty() && (holes.size() == 1); }
 		/// The objects by place, and the radii around a hole at which each may be hit.
 		const Chord_Tree& Tree() const { return tree; }
 		const std::vector<std::pair<DBL, DBL> >& Radii_Of(size_t hole) const { return radii[hole]; }
+
+		/// The objects that reach out of all effect spheres: what a straight leg may hit.
+		const std::vector<unsigned int>& Outside() const { return outside; }
 
 		/// The hole in whose effect sphere the point lies, or NULL.
 		const Blackhole *At(const VECTOR p) const;
@@ -85,8 +93,10 @@ class Blackholes
 		Hole_Overrides overrides;
 		std::vector<Blackhole *> holes;
 		std::vector<Shells> shells;
+		std::vector<blackhole::Atlas> atlases;
 		Chord_Tree tree;
 		std::vector<std::vector<std::pair<DBL, DBL> > > radii;
+		std::vector<unsigned int> outside;
 		DBL blind, vague;
 		bool far_objects;
 		const Blackhole *falling;

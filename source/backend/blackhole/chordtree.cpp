@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#ifdef __SSE__
+#include <xmmintrin.h>
+#endif
 
 // frame.h must always be the first POV file included (pulls in platform config)
 #include "backend/frame.h"
 #include "backend/math/vector.h"
 #include "backend/scene/objects.h"
+#include "backend/shape/csg.h"
 #include "backend/shape/planes.h"
 #include "backend/blackhole/chordtree.h"
 
@@ -15,67 +19,10 @@
 namespace pov
 {
 
-static void Widen(Chord_Run::Box& b)
+// What single precision may lose of a number of this size, several times over.
+static DBL Rounding(DBL size)
 {
-	b.widest = max(b.hi[0] - b.lo[0], max(b.hi[1] - b.lo[1], b.hi[2] - b.lo[2]));
-}
-
-static void Join(Chord_Run::Box& box, const Chord_Run::Box& a, const Chord_Run::Box& b)
-{
-	for(int i = 0; i < 3; i++)
-	{
-		box.lo[i] = a.lo[i] < b.lo[i] ? a.lo[i] : b.lo[i];
-		box.hi[i] = a.hi[i] > b.hi[i] ? a.hi[i] : b.hi[i];
-	}
-	Widen(box);
-}
-
-static bool Overlap(const Chord_Run::Box& a, const Chord_Run::Box& b)
-{
-	return (a.lo[0] <= b.hi[0]) && (b.lo[0] <= a.hi[0]) && (a.lo[1] <= b.hi[1]) && (b.lo[1] <= a.hi[1]) && (a.lo[2] <= b.hi[2]) && (b.lo[2] <= a.hi[2]);
-}
-
-// Whether the segment meets the box.
-static bool Meets(const Chord_Run::Chord& c, const Chord_Run::Box& box)
-{
-	DBL in = 0.0, out = 1.0;
-	for(int i = 0; i < 3; i++)
-	{
-		const DBL d = c.to[i] - c.from[i];
-		if(fabs(d) < 1e-30)
-		{
-			if((c.from[i] < box.lo[i]) || (c.from[i] > box.hi[i]))
-				return false;
-			continue;
-		}
-		const DBL a = (box.lo[i] - c.from[i]) / d, b = (box.hi[i] - c.from[i]) / d;
-		in = max(in, min(a, b));
-		out = min(out, max(a, b));
-		if(in > out)
-			return false;
-	}
-	return true;
-}
-
-void Chord_Run::Bound()
-{
-	for(int j = 0; j < MOST; j++)
-	{
-		Box& b = boxes[MOST + j];
-		for(int i = 0; i < 3; i++)
-		{
-			b.lo[i] = j < count ? min(chords[j].from[i], chords[j].to[i]) : HUGE_VAL;
-			b.hi[i] = j < count ? max(chords[j].from[i], chords[j].to[i]) : -HUGE_VAL;
-			if(arcs && (j < count))
-			{
-				b.lo[i] -= chords[j].bulge;
-				b.hi[i] += chords[j].bulge;
-			}
-		}
-		Widen(b);
-	}
-	for(int i = MOST - 1; i > 0; i--)
-		Join(boxes[i], boxes[2 * i], boxes[2 * i + 1]);
+	return 1e-6 * size;
 }
 
 void Chord_Tree::Build(const std::vector<ObjectPtr>& scene, DBL m)
@@ -86,62 +33,87 @@ void Chord_Tree::Build(const std::vector<ObjectPtr>& scene, DBL m)
 	{
 		if(!Visible(*scene[k]))
 			continue;
-		Chord_Run::Box box;
-		for(int i = 0; i < 3; i++)
-		{
-			const DBL lo = scene[k]->BBox.Lower_Left[i], hi = lo + scene[k]->BBox.Lengths[i], more = margin + 1e-6 * max(fabs(lo), fabs(hi)); // boxes are in single precision
-			box.lo[i] = lo - more;
-			box.hi[i] = hi + more;
-		}
+		Scene_Box box;
+		box.Take(*scene[k], margin);
+		const DBL widest = max(box.hi[0] - box.lo[0], max(box.hi[1] - box.lo[1], box.hi[2] - box.lo[2]));
 		// A plane's box is half of space; so is that of most things as large as this.
-		Widen(box);
-		if(box.widest > 1e6)
+		if(!(widest <= 1e6))
 			endless.push_back((unsigned int)objects.size());
 		else
 			list.push_back(int(objects.size()));
 		const Plane *plane = dynamic_cast<const Plane *>(scene[k]);
 		planes.push_back((plane != NULL) && (plane->Trans == NULL) ? plane : NULL);
+		const bool made_of_others = (dynamic_cast<const CSG *>(scene[k]) != NULL);
+		solids.push_back(made_of_others ? int(bounds.size()) : -1);
+		if(made_of_others)
+			bounds.push_back(Solid_Bounds(*scene[k], margin));
 		objects.push_back(scene[k]);
 		boxes.push_back(box);
 	}
-	if(list.empty())
-		return;
-	nodes.push_back(Node());
-	Split(0, list, 0, list.size());
+	if(!list.empty())
+		Split(list, 0, list.size());
 }
 
-void Chord_Tree::Split(int n, std::vector<int>& list, size_t from, size_t to)
+// Makes a node of the objects list[from] to list[to - 1], in four parts along the longest sides of their centres.
+int Chord_Tree::Split(std::vector<int>& list, size_t from, size_t to)
 {
-	Chord_Run::Box box = boxes[list[from]];
-	for(size_t i = from + 1; i < to; i++)
-		Join(box, box, boxes[list[i]]);
-	nodes[n].box = box;
-	nodes[n].left = -1;
-	nodes[n].object = list[from];
-	if(to - from == 1)
-		return;
-	int axis = 0;
-	for(int i = 1; i < 3; i++)
-		if(box.hi[i] - box.lo[i] > box.hi[axis] - box.lo[axis])
-			axis = i;
-	std::vector<std::pair<DBL, int> > order;
-	for(size_t i = from; i < to; i++)
-		order.push_back(std::make_pair(boxes[list[i]].lo[axis] + boxes[list[i]].hi[axis], list[i]));
-	std::sort(order.begin(), order.end());
-	for(size_t i = from; i < to; i++)
-		list[i] = order[i - from].second;
-	const size_t middle = from + (to - from) / 2;
-	const int left = int(nodes.size());
+	const int n = int(nodes.size());
 	nodes.push_back(Node());
-	nodes.push_back(Node());
-	nodes[n].left = left;
-	Split(left, list, from, middle);
-	Split(left + 1, list, middle, to);
+	size_t cuts[5] = { from, from, (from + to) / 2, to, to };
+	const auto halve = [&](size_t first, size_t last)
+	{
+		const size_t middle = (first + last) / 2;
+		int axis = 0;
+		DBL longest = -1.0;
+		const auto centre = [&](int object, int i) { return boxes[object].lo[i] + boxes[object].hi[i]; };
+		for(int i = 0; i < 3; i++)
+		{
+			DBL lo = HUGE_VAL, hi = -HUGE_VAL;
+			for(size_t k = first; k < last; k++)
+			{
+				lo = min(lo, centre(list[k], i));
+				hi = max(hi, centre(list[k], i));
+			}
+			if(hi - lo > longest)
+			{
+				longest = hi - lo;
+				axis = i;
+			}
+		}
+		std::sort(list.begin() + first, list.begin() + last, [&](int a, int b) { return std::make_pair(centre(a, axis), a) < std::make_pair(centre(b, axis), b); });
+		return middle;
+	};
+	if(to - from > 1)
+	{
+		cuts[2] = halve(from, to);
+		cuts[1] = cuts[2] - from > 1 ? halve(from, cuts[2]) : from;
+		cuts[3] = to - cuts[2] > 1 ? halve(cuts[2], to) : to;
+	}
+	for(int c = 0; c < 4; c++)
+	{
+		Scene_Box all = { { 1e30, 1e30, 1e30 }, { -1e30, -1e30, -1e30 } };
+		for(size_t k = cuts[c]; k < cuts[c + 1]; k++)
+			for(int i = 0; i < 3; i++)
+			{
+				all.lo[i] = min(all.lo[i], boxes[list[k]].lo[i]);
+				all.hi[i] = max(all.hi[i], boxes[list[k]].hi[i]);
+			}
+		for(int i = 0; i < 3; i++)
+		{
+			const DBL more = Rounding(max(fabs(all.lo[i]), fabs(all.hi[i])));
+			nodes[n].side[0][i][c] = float(all.lo[i] - more);
+			nodes[n].side[1][i][c] = float(all.hi[i] + more);
+		}
+		const size_t in = cuts[c + 1] - cuts[c];
+		const int child = in > 1 ? Split(list, cuts[c], cuts[c + 1]) : (in == 1 ? ~list[cuts[c]] : 0);
+		nodes[n].child[c] = child;
+	}
+	return n;
 }
 
-std::vector<std::pair<DBL, DBL> > Chord_Tree::Radii_Around(const Blackhole& hole) const
+Chord_Tree::Radii_List Chord_Tree::Radii_Around(const Blackhole& hole) const
 {
-	std::vector<std::pair<DBL, DBL> > radii(objects.size());
+	Radii_List radii(objects.size());
 	for(size_t i = 0; i < objects.size(); i++)
 	{
 		Radii(*objects[i], hole, radii[i].first, radii[i].second);
@@ -158,71 +130,92 @@ static DBL Height(const VECTOR p, const Plane *plane)
 	return h + plane->Distance;
 }
 
-// Whether a chord, or an arc, may meet a plane: not if all of it is well on one side.
-static bool May_Meet(const Chord_Run::Chord& c, bool arc, const Plane *plane, DBL margin)
+// Four at a time. SSE is part of every x86-64; compilers do not find these instructions by themselves.
+#ifdef __SSE__
+#define Greater(a, b) _mm_max_ps(a, b)
+#define Lesser(a, b) _mm_min_ps(a, b)
+#define No_Greater(a, b) _mm_movemask_ps(_mm_cmple_ps(a, b))
+#else
+typedef float Any_Four __attribute__((vector_size(16)));
+static inline Any_Four Greater(Any_Four a, Any_Four b) { return a > b ? a : b; }
+static inline Any_Four Lesser(Any_Four a, Any_Four b) { return a < b ? a : b; }
+static inline int No_Greater(Any_Four a, Any_Four b) { return (a[0] <= b[0]) | (a[1] <= b[1]) << 1 | (a[2] <= b[2]) << 2 | (a[3] <= b[3]) << 3; }
+#endif
+
+static inline bool In_Shell(const Scene_Chord& c, const std::pair<DBL, DBL>& shell)
 {
-	const DBL a = Height(c.from, plane), b = Height(c.to, plane), near = margin + (arc ? c.bulge : 0.0);
-	return (min(a, b) <= near) && (max(a, b) >= -near);
+	return (c.nearest <= shell.second) && (shell.first <= c.farthest);
 }
 
-void Chord_Tree::Choose(const Chord_Run::Chord& chord, const std::vector<std::pair<DBL, DBL> >& radii, const std::vector<unsigned int>& of, std::vector<unsigned int>& out) const
+// Whether a chord, or an arc, may meet an object: a plane not if all of it is well on one side.
+inline bool Chord_Tree::May_Hit(const Scene_Chord& c, const Radii_List& radii, unsigned int object) const
+{
+	if(!In_Shell(c, radii[object]))
+		return false;
+	if(const Plane *plane = planes[object])
+	{
+		const DBL a = Height(c.from, plane), b = Height(c.to, plane), near = margin + c.bulge;
+		return (min(a, b) <= near) && (max(a, b) >= -near);
+	}
+	return boxes[object].Meets(c) && ((solids[object] < 0) || bounds[solids[object]].May_Hit(c));
+}
+
+void Chord_Tree::Choose(const Scene_Chord& chord, const Radii_List& radii, const Object_List& of, Object_List& out) const
 {
 	out.clear();
 	for(size_t i = 0; i < of.size(); i++)
-	{
-		const std::pair<DBL, DBL>& r = radii[of[i]];
-		if((chord.nearest <= r.second) && (r.first <= chord.farthest) && (planes[of[i]] != NULL ? May_Meet(chord, false, planes[of[i]], margin) : Meets(chord, boxes[of[i]])))
+		if(May_Hit(chord, radii, of[i]))
 			out.push_back(of[i]);
-	}
 }
 
-void Chord_Tree::Find(Chord_Run& run, const std::vector<std::pair<DBL, DBL> >& radii, Chord_Candidates& out) const
+void Chord_Tree::Find(const Scene_Chord& c, const Radii_List& radii, Object_List& out) const
 {
-	out.found.clear();
-	out.taken = 0;
-	if(run.Count() == 0)
-		return;
-	run.Bound();
+	out.clear();
 	for(size_t k = 0; k < endless.size(); k++)
+		if(May_Hit(c, radii, endless[k]))
+			out.push_back(endless[k]);
+	if(nodes.empty())
+		return;
+	// The slabs of four boxes at a time, widened by the bulge: near and far side by the chord's own direction.
+	Four near_side[3], far_side[3], per[3];
+	int sign[3];
+	DBL size = c.bulge;
+	for(int i = 0; i < 3; i++)
+		size = max(size, max(fabs(c.from[i]), fabs(c.to[i])));
+	const DBL wide = c.bulge + Rounding(size);
+	for(int i = 0; i < 3; i++)
 	{
-		const unsigned int object = endless[k];
-		const std::pair<DBL, DBL>& r = radii[object];
-		for(int j = 0; j < run.Count(); j++)
-			if((run[j].nearest <= r.second) && (r.first <= run[j].farthest) && ((planes[object] == NULL) || May_Meet(run[j], run.Arcs(), planes[object], margin)))
-				out.found.push_back(std::make_pair(j, object));
+		const DBL d = c.to[i] - c.from[i], w = d < 0.0 ? -wide : wide;
+		const float n = float(c.from[i] + w), f = float(c.from[i] - w), p = 1.0f / (fabs(d) < 1e-20 ? 1e-20f : float(d));
+		near_side[i] = Four{ n, n, n, n };
+		far_side[i] = Four{ f, f, f, f };
+		per[i] = Four{ p, p, p, p };
+		sign[i] = d < 0.0;
 	}
-	out.stack.clear();
-	// Pairs of boxes that overlap; the wider of each is split.
-	if(!nodes.empty() && Overlap(nodes[0].box, run.Heap(1)))
-		out.stack.push_back(std::make_pair(0, 1));
-	while(!out.stack.empty())
+	int stack[256], depth = 0;
+	stack[depth++] = 0;
+	while(depth > 0)
 	{
-		const int n = out.stack.back().first, h = out.stack.back().second;
-		out.stack.pop_back();
-		const Node& node = nodes[n];
-		const bool one_chord = (h >= Chord_Run::MOST), leaf = (node.left < 0);
-		if(one_chord && leaf)
+		const Node& node = nodes[stack[--depth]];
+		Four in = { 0, 0, 0, 0 }, beyond = { 1, 1, 1, 1 };
+		for(int i = 0; i < 3; i++)
 		{
-			const Chord_Run::Chord& c = run[h - Chord_Run::MOST];
-			const std::pair<DBL, DBL>& r = radii[node.object];
-			if((c.nearest <= r.second) && (r.first <= c.farthest) && (run.Arcs() || Meets(c, node.box)))
-				out.found.push_back(std::make_pair(h - Chord_Run::MOST, (unsigned int)node.object));
+			in = Greater((node.side[sign[i]][i] - near_side[i]) * per[i], in);
+			beyond = Lesser((node.side[1 - sign[i]][i] - far_side[i]) * per[i], beyond);
 		}
-		else if(leaf || (!one_chord && (run.Heap(h).widest > node.box.widest)))
+		for(int meets = No_Greater(in, beyond), k = 0; meets != 0; meets >>= 1, k++)
 		{
-			for(int i = 2 * h; i <= 2 * h + 1; i++)
-				if(Overlap(node.box, run.Heap(i)))
-					out.stack.push_back(std::make_pair(n, i));
-		}
-		else
-		{
-			for(int i = node.left; i <= node.left + 1; i++)
-				if(Overlap(nodes[i].box, run.Heap(h)))
-					out.stack.push_back(std::make_pair(i, h));
+			const int child = node.child[k];
+			if(!(meets & 1))
+				continue;
+			if(child > 0)
+				stack[depth++] = child;
+			else if((child < 0) && In_Shell(c, radii[~child]))
+				out.push_back((unsigned int)(~child));
 		}
 	}
-	if(out.found.size() > 1)
-		std::sort(out.found.begin(), out.found.end());
+	if(out.size() > 1)
+		std::sort(out.begin(), out.end());
 }
 
 }

@@ -17,7 +17,7 @@ namespace pov
 {
 
 static POV_ULONG Blackhole_Counts::* const SUMS[] = {
-	&Blackhole_Counts::Entered, &Blackhole_Counts::Captured, &Blackhole_Counts::Closed, &Blackhole_Counts::Paths,
+	&Blackhole_Counts::Entered, &Blackhole_Counts::Captured, &Blackhole_Counts::Closed, &Blackhole_Counts::Charted, &Blackhole_Counts::Paths,
 	&Blackhole_Counts::Steps, &Blackhole_Counts::Filled, &Blackhole_Counts::Chords, &Blackhole_Counts::Tested,
 	&Blackhole_Counts::Skipped, &Blackhole_Counts::Object_Tests, &Blackhole_Counts::Hits, &Blackhole_Counts::Nudged,
 	&Blackhole_Counts::Failed, &Blackhole_Counts::Exhausted, &Blackhole_Counts::Drifted, &Blackhole_Counts::Trapped,
@@ -105,14 +105,15 @@ std::string Blackhole_Counts::Text(const std::vector<Blackhole *>& holes, const 
 	char text[1024];
 	snprintf(text, sizeof text,
 	         "Bent Rays:          %15.0f   Captured:        %15.0f\n"
-	         "Closed Form Alone:  %15.0f   Paths Followed:  %15.0f\n"
-	         "Steps:              %15.0f   Per Path:        %9.2f (most %u)\n"
+	         "Closed Form Alone:  %15.0f   Charted Orbits:  %15.0f\n"
+	         "Paths Followed:     %15.0f   Steps:           %15.0f\n"
+	         "Steps Per Path:     %15.2f   Most Steps:      %15u\n"
 	         "Chords:             %15.0f   Per Ray:         %9.2f (most %u)\n"
 	         "Chords Tested:      %15.0f   Skipped:         %15.0f\n"
 	         "Object Tests:       %15.0f   Hits:            %15.0f\n"
 	         "Most Turns:         %15.2f   Largest Drift:   %15.2g\n",
-	         double(Entered), double(Captured), double(Closed), double(Paths),
-	         double(Steps), double(Steps) / paths, Most_Steps,
+	         double(Entered), double(Captured), double(Closed), double(Charted),
+	         double(Paths), double(Steps), double(Steps) / paths, Most_Steps,
 	         double(Chords), double(Chords) / entered, Most_Chords,
 	         double(Tested), double(Skipped), double(Object_Tests), double(Hits), Most_Swept / (2.0 * M_PI), Drift);
 	std::string lines(text);

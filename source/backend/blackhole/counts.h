@@ -19,7 +19,7 @@ class Shells;
 struct Blackhole_Counts
 {
 	POV_ULONG Entered, Captured;   ///< passages of an effect sphere; those that ended in a horizon
-	POV_ULONG Closed, Paths;       ///< passages by the closed form alone, and those whose path was followed
+	POV_ULONG Closed, Charted, Paths; ///< passages by the closed form alone, along a charted orbit, and those whose path was followed
 	POV_ULONG Steps;               ///< nodes of all paths, but the first of each
 	POV_ULONG Filled;              ///< passages with fog, rainbow or media along them
 	POV_ULONG Chords, Tested, Skipped;

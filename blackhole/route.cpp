@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "blackhole/route.h"
+
+#include "blackhole/turn.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+namespace blackhole {
+
+// A way s on from a state, where u and w are known.
+Route::State Route::turned(const State& from, double u, double w, double s) const {
+	double c, t;
+	turn(orbit_.k() * s, c, t);
+	return {u, w, c * from.cosine - t * from.sine, t * from.cosine + c * from.sine};
+}
+
+// Knot |q|; before the turning point, or on the way in, where q < 0.
+Route::State Route::canonical(int q) const {
+	const Knot n = orbit_.knot(q < 0 ? -q : q);
+	const double w = n[1] / std::max(orbit_.b(), 1.0), c = n[2], t = n[3];
+	// The interpolated cosine and sine are not quite those of one angle: one step of Newton's towards length 1.
+	const double even = 1.5 - 0.5 * (c * c + t * t);
+	return q < 0 ? State{n[0], -w, even * c, -even * t} : State{n[0], w, even * c, even * t};
+}
+
+Route::State Route::corner(int number) const {
+	if (number == 0)
+		return begin_;
+	if (number == corners_)
+		return end_;
+	return number <= ramps_ ? ramp_[number - 1] : canonical(first_ + number - ramps_ - 1);
+}
+
+Vec3 Route::place(const State& at) const {
+	const double r = 1 / at.u;
+	return (r * at.cosine) * f1_ + (r * at.sine) * f2_;
+}
+
+Vec3 Route::direction(const State& at) const {
+	const double out = -std::max(orbit_.b(), 1.0) * at.w, across = orbit_.b() * at.u;
+	return unit((out * at.cosine - across * at.sine) * f1_ + (out * at.sine + across * at.cosine) * f2_);
+}
+
+bool Route::solve(const Vec3& x, const Vec3& d, const Atlas& atlas, bool ramp) {
+	const Vec3 axis = cross(x, d);
+	const double r2 = dot(x, x), twist2 = dot(axis, axis), s = dot(x, d), r = std::sqrt(r2);
+	if (!(r > 1 + 1e-6))
+		return false;
+	// |x|^2 |d|^2 times the energy's square, without cancellation near the horizon.
+	const double energy = s * s + twist2 * ((r - 1) / r), twist = std::sqrt(twist2), speed = 1 / std::sqrt(energy);
+	const double b = r * twist * speed;
+	if (!atlas.find(b, orbit_) || (orbit_.turns() && r <= photon_sphere))
+		return false;
+	tolerance_ = atlas.settings().tolerance;
+	start_ = x;
+	const double u = 1 / r, w = -s * speed / std::max(b, 1.0), edge = 1 / atlas.settings().effect_radius;
+	escapes_ = orbit_.turns() || s > 0;
+
+	double way;
+	const int knot = orbit_.before(u, -std::fabs(w), way);
+	// Out from the knot before it, or in to that.
+	const int in = w > 0 ? -1 : 1;
+	const State outward = turned(canonical(knot), u, -std::fabs(w), way);
+	begin_ = {u, w, outward.cosine, in * outward.sine};
+	swept_ = -in * (orbit_.angle(knot) + orbit_.k() * way);
+	first_ = w > 0 ? -knot : knot + 1;
+	const Vec3 e1 = u * x, e2 = (1 / (twist * r)) * cross(axis, x);
+	f1_ = begin_.cosine * e1 - begin_.sine * e2;
+	f2_ = begin_.sine * e1 + begin_.cosine * e2;
+
+	ramps_ = 0;
+	if (ramp)
+		add_ramp(escapes_ ? edge : -1);
+	if (escapes_) {
+		const double slope = orbit_.slope(edge);
+		if (w > 0 && std::fabs(u - edge) < 1e-12 * edge) {
+			// In where it goes out: by symmetry.
+			last_ = knot;
+			end_ = {edge, slope, begin_.cosine, -begin_.sine};
+			swept_ *= 2;
+		} else {
+			last_ = orbit_.before(edge, slope, way);
+			end_ = turned(canonical(last_), edge, slope, way);
+			swept_ += orbit_.angle(last_) + orbit_.k() * way;
+		}
+	} else {
+		last_ = -1;
+		end_ = {1, -orbit_.slope(1), 1, 0};
+	}
+	corners_ = 1 + ramps_ + std::max(0, last_ - first_ + 1);
+	at_ = 0;
+	state_ = begin_;
+	point_ = x;
+	return true;
+}
+
+// Short steps from the start, each by Runge and Kutta's method, up to a chord's length; the charted knots go on from there.
+void Route::add_ramp(double edge) {
+	const double k2 = orbit_.k() * orbit_.k(), unit_s = 1 / orbit_.density(begin_.u);
+	State from = begin_;
+	double s = 0;
+	for (int i = 0; i < ramp_count; i++) {
+		const double h = ramp_corners[i] * unit_s - s, half = 0.5 * h;
+		const double a1 = acceleration(from.u, k2), a2 = acceleration(from.u + half * from.w, k2);
+		const double a3 = acceleration(from.u + half * (from.w + half * a1), k2),
+					 a4 = acceleration(from.u + h * (from.w + half * a2), k2);
+		const double u = from.u + h * (from.w + h / 6 * (a1 + a2 + a3)), w = from.w + h / 6 * (a1 + 2 * (a2 + a3) + a4);
+		if (u >= 1 || (u <= edge && w < 0))
+			break;
+		s += h;
+		from = ramp_[ramps_++] = turned(from, u, w, h);
+	}
+	double way;
+	const int knot = orbit_.before(from.u, -std::fabs(from.w), way);
+	first_ = from.w > 0 ? -knot : knot + 1;
+}
+
+double Route::drift() const {
+	const Knot n = orbit_.knot(std::min(std::abs(first_), orbit_.count() - 1));
+	const double b = orbit_.b(), u = n[0], v = n[1];
+	return std::fabs(v * v + b * b * u * u * (1 - u) - 1) / (1 + b * b * std::fabs(u * u * u));
+}
+
+double Route::length() const {
+	double sum = 0;
+	Vec3 from = start_;
+	for (int i = 1; i <= corners_; i++) {
+		const Vec3 to = place(corner(i));
+		sum += blackhole::length(to - from);
+		from = to;
+	}
+	return sum;
+}
+
+void Route::go_to(Bookmark there) {
+	at_ = there;
+	state_ = corner(there);
+	point_ = there == 0 ? start_ : place(state_);
+}
+
+bool Route::next(Chord& chord) {
+	if (at_ >= corners_)
+		return false;
+	chord.from = point_;
+	chord.at_from = {static_cast<std::size_t>(at_), 0};
+	const State from = state_;
+	state_ = corner(++at_);
+	chord.to = point_ = place(state_);
+	chord.at_to = {static_cast<std::size_t>(at_), 0};
+	// No point of a chord is nearer than the smaller end times the cosine of half the angle; that cosine's square is less.
+	const double swept = from.cosine * state_.cosine + from.sine * state_.sine;
+	chord.farthest = 1 / std::min(from.u, state_.u);
+	chord.nearest = (1 + swept) / (2 * std::max(from.u, state_.u));
+	return true;
+}
+
+Vec2 Route::in_plane(const State& at) const { return {at.cosine / at.u, at.sine / at.u}; }
+
+// The tangent's off a direction in the plane, as a slope.
+double Route::slope(const State& at, Vec2 along) const {
+	constexpr double steep = 100;
+	const double out = -std::max(orbit_.b(), 1.0) * at.w, across = orbit_.b() * at.u;
+	const Vec2 t = {out * at.cosine - across * at.sine, out * at.sine + across * at.cosine};
+	const double aside = std::fabs(cross(t, along)), ahead = dot(t, along);
+	return aside < steep * ahead ? aside / ahead : steep;
+}
+
+bool Route::next(Arc& arc, int chords) {
+	if (at_ >= corners_)
+		return false;
+	arc.from = point_;
+	// Of more chords an arc would be a poor triangle.
+	arc.chords = std::min({chords, std::max(1, static_cast<int>(0.3 / std::sqrt(tolerance_))), corners_ - at_});
+	const State from = state_;
+	at_ += arc.chords;
+	state_ = corner(at_);
+	arc.to = point_ = place(state_);
+	const double swept = from.cosine * state_.cosine + from.sine * state_.sine, far = 1 / std::min(from.u, state_.u);
+	// In the plane, the triangle of the long chord and the tangents at its ends: how steep they are, and its height.
+	const Vec2 along = in_plane(state_) - in_plane(from);
+	const double p = slope(from, along), q = slope(state_, along), l = blackhole::length(along);
+	arc.bulge = (p + q > 0 ? l * p * q / (p + q) : 0) + 0.1 * tolerance_ * far;
+	arc.length = l * (1 + (2 * p * p + 2 * q * q + p * q) / 30);
+	arc.farthest = far + arc.bulge;
+	arc.nearest = (1 + swept) / (2 * std::max(from.u, state_.u));
+	return true;
+}
+
+} // namespace blackhole

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+/// One ray's way by the atlas: the same as a Path with its Chords, for a fraction of the time, where the atlas has it.
+///
+/// Chords end at the orbit's charted knots, wherever the ray starts: the first and the last are shorter. As the start moves
+/// across a knot a chord of no length comes or goes, so nothing tears.
+#ifndef BLACKHOLE_ROUTE_H
+#define BLACKHOLE_ROUTE_H
+
+#include "blackhole/atlas.h"
+#include "blackhole/chords.h"
+
+namespace blackhole {
+
+class Route {
+public:
+	/// x, d as for Path::solve(), outside the horizon; ramp as for Chords. Returns false where the atlas does not have the ray:
+	/// then a Path must do. A walk begins at the start.
+	bool solve(const Vec3& x, const Vec3& d, const Atlas& atlas, bool ramp);
+
+	Outcome outcome() const { return escapes_ ? Outcome::escaped : Outcome::captured; }
+	/// Where it ends and the unit tangent there, as Path's.
+	Vec3 end() const { return place(end_); }
+	Vec3 end_tangent() const { return direction(end_); }
+	/// Angle swept around the hole's centre, radians.
+	double swept() const { return swept_; }
+	/// The energy's relative change to the first knot, as Path's.
+	double drift() const;
+	/// Euclidean length, as all its chords.
+	double length() const;
+
+	/// As those of Chords. A mark's piece is the corner's number from the start.
+	bool next(Chord& chord);
+	bool next(Arc& arc, int chords);
+	using Bookmark = int;
+	Bookmark bookmark() const { return at_; }
+	void go_to(Bookmark there);
+	Vec3 tangent(const Mark& mark) const { return direction(corner(static_cast<int>(mark.piece))); }
+
+private:
+	// u, du/ds along the ray, and the angle from where the orbit's knots are counted.
+	struct State {
+		double u, w, cosine, sine;
+	};
+	State turned(const State& from, double u, double w, double s) const;
+	State canonical(int q) const;
+	State corner(int number) const;
+	Vec3 place(const State& at) const;
+	Vec3 direction(const State& at) const;
+	Vec2 in_plane(const State& at) const;
+	double slope(const State& at, Vec2 along) const;
+	void add_ramp(double edge);
+
+	Charted orbit_;
+	Vec3 start_, f1_, f2_; // axes of the orbit's plane, the angle counted from f1
+	double tolerance_ = 0, swept_ = 0;
+	bool escapes_ = true;
+	State begin_{}, end_{};
+	State ramp_[ramp_count];
+	int ramps_ = 0;
+	int first_ = 0, last_ = -1; // knots on the way: canonical(first_) ... canonical(last_)
+	int corners_ = 1;           // after the start
+	// The walk.
+	int at_ = 0;
+	State state_{};
+	Vec3 point_;
+};
+
+} // namespace blackhole
+
+#endif
