@@ -196,8 +196,9 @@ int drain_command(const Words& words) {
 	if (a.rest.size() != 1)
 		throw Error("which worker? 'bhfarm workers' lists them");
 	Client client = connect(a);
+	const json workers = client.get("/v1/workers");
 	std::string id;
-	for (const json& w : client.get("/v1/workers").at("workers"))
+	for (const json& w : workers.at("workers"))
 		if (w.value("id", "") == a.rest[0] || w.value("name", "") == a.rest[0])
 			id = w.value("id", "");
 	if (id.empty())

@@ -16,18 +16,26 @@
 namespace farm {
 namespace {
 
-/// Below which name the scene asked for a file: POV-Ray looks in its own folder first and then in the libraries.
-std::string asked_name(const std::string& found, const SettledScene& scene) {
-	const fs::path path(found);
-	if (path.is_relative())
-		return path.lexically_normal().string();
+/// The names by which the scene may have asked for a file: those that POV-Ray's search (its own folder, then the libraries) leads
+/// from to it.
+std::set<std::string> asked_names(const std::string& found, const SettledScene& scene) {
+	if (fs::path(found).is_relative())
+		return {fs::path(found).lexically_normal().string()};
+	std::set<std::string> names;
 	for (const auto& library : scene.libraries) {
-		// As POV-Ray puts folder and name together.
-		const fs::path inner = fs::path(found).lexically_relative(library);
-		if (!inner.empty() && *inner.begin() != "..")
-			return inner.string();
+		const fs::path name = fs::path(found).lexically_normal().lexically_relative(library);
+		if (name.empty() || *name.begin() == "..")
+			continue;
+		fs::path first = scene.scene.parent_path() / name;
+		for (auto l = scene.libraries.begin(); l != scene.libraries.end() && !fs::exists(first); ++l)
+			first = *l / name;
+		if (fs::equivalent(first, found))
+			names.insert(name.string());
 	}
-	throw Error("the scene reads " + found + " by an absolute name, which workers do not have; name it relative to the scene");
+	if (names.empty())
+		throw Error(
+			"the scene reads " + found + " by an absolute name, which workers do not have; name it relative to the scene");
+	return names;
 }
 
 bool of_the_system(const std::string& name) {
@@ -97,7 +105,8 @@ Gathered gather(SettledScene& scene, const fs::path& povray, const std::vector<s
 		if (!of_the_system(name)) {
 			const fs::path path = fs::path(name).is_relative() ? folder / name : fs::path(name);
 			if (fs::is_regular_file(path))
-				files.emplace(asked_name(name, scene), path.lexically_normal());
+				for (const auto& asked : asked_names(name, scene))
+					files.emplace(asked, path.lexically_normal());
 		}
 	for (const auto& pattern : assets)
 		for (const auto& name : matches(pattern, folder))

@@ -71,7 +71,8 @@ void Spool::sweep(const std::set<std::string>& bundles, double seconds) const {
 	std::set<std::string> needed;
 	for (const auto& entry : fs::directory_iterator(root / "bundles")) {
 		if (bundles.count(entry.path().stem()) || entry.last_write_time() > old) {
-			for (const auto& file : parse_object(read_file(entry.path())).get<Bundle>().files)
+			const Bundle bundle = parse_object(read_file(entry.path())).get<Bundle>();
+			for (const auto& file : bundle.files)
 				needed.insert(file.sha256);
 		} else {
 			fs::remove(entry.path());
