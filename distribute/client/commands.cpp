@@ -68,9 +68,13 @@ int submit_command(const Words& words) {
 	const auto options = scene_options + std::vector<Option>{json_option} + server_options;
 	const Arguments a(words, options);
 	help_if_asked(a, "bhfarm submit SCENE.ini|SCENE.pov [options] [POV-Ray's own words]\nPrints the job's number.", options);
-	// The server's slots may come and go; a small lab's worth.
-	const Prepared prepared = prepare(a, 16);
 	Client client = connect(a);
+	const json workers = client.get("/v1/workers");
+	int slots = 0;
+	for (const json& w : workers.at("workers"))
+		slots += w.value("slots", 0);
+	// With nobody there yet, a small lab's worth.
+	const Prepared prepared = prepare(a, slots > 0 ? slots : 16);
 	const std::int64_t id = send_job(client, prepared);
 	if (a.has("--json"))
 		std::puts(client.get(path_of(id)).dump().c_str());

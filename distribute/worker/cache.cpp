@@ -8,13 +8,24 @@
 
 namespace farm {
 
-Cache::Cache(const fs::path& f) : folder(fs::absolute(f)) {
+Cache::Cache(const fs::path& f, double keep_days) : folder(fs::absolute(f)) {
 	std::error_code error;
 	for (const char* name : {"files", "bundles", "incoming"}) {
 		fs::create_directories(folder / name, error);
 		if (error)
 			throw Error("cannot make " + (folder / name).string() + ": " + error.message());
 	}
+	const auto old = fs::file_time_type::clock::now() -
+					 std::chrono::duration_cast<fs::file_time_type::duration>(std::chrono::duration<double>(keep_days * 86400));
+	for (const auto& list : fs::directory_iterator(folder / "bundles"))
+		if (list.path().extension() == ".json" && list.last_write_time(error) < old && !error) {
+			fs::remove(list.path(), error);
+			fs::remove_all(folder / "bundles" / list.path().stem(), error);
+		}
+	// A file that only we have a name for is in no bundle any more.
+	for (const auto& file : fs::directory_iterator(folder / "files"))
+		if (file.hard_link_count(error) == 1 && !error && file.last_write_time(error) < old && !error)
+			fs::remove(file.path(), error);
 }
 
 void Cache::fetch(Client& client, const BundleFile& file) {
@@ -58,6 +69,8 @@ fs::path Cache::bundle(Client& client, const std::string& id, fs::path& root) {
 			throw Error("cannot make " + root.string() + ": " + taken.message());
 		write_durably(list, json(bundle).dump());
 	}
+	std::error_code ignored; // when it was last asked for
+	fs::last_write_time(list, fs::file_time_type::clock::now(), ignored);
 	return root / parse_object(read_file(list)).get<Bundle>().folder;
 }
 

@@ -14,7 +14,8 @@ namespace farm {
 /// Safe for several threads and several workers on one machine: everything comes into its place by a rename.
 class Cache {
 public:
-	explicit Cache(const fs::path& folder);
+	/// Also throws out what no job has asked for in `keep_days`.
+	explicit Cache(const fs::path& folder, double keep_days = 14);
 	/// The folder where povray is to run for this bundle, which is fetched if it is not here. `root` gets the bundle's top.
 	/// Throws Unreachable, Refused, or Error if a file is not what its hash says.
 	fs::path bundle(Client& client, const std::string& id, fs::path& root);

@@ -24,6 +24,7 @@ const std::vector<Option> options = {
 	{"--idle-exit", "SECONDS", "leave after so long without work; 0: stay", "0"},
 	{"--grace", "SECONDS", "what strips may still take after SIGTERM before they are given back", "20"},
 	{"--nice", "N", "niceness of povray", "19"},
+	{"--when-idle", "", "take nothing while others use more than half of the cores", ""},
 	{"--cache", "DIR", "where scenes are kept; default $XDG_CACHE_HOME/bhfarm", ""},
 	{"--povray", "FILE", "the povray to run; default the one beside this program", ""},
 	{"--help", "", "this", ""},
@@ -44,6 +45,7 @@ int work(const Arguments& arguments) {
 	settings.idle_exit = static_cast<double>(arguments.number("--idle-exit", 0, 1000000));
 	settings.grace = static_cast<double>(arguments.number("--grace", 0, 1000000));
 	settings.nice = static_cast<int>(arguments.number("--nice", 0, 19));
+	settings.when_idle = arguments.has("--when-idle");
 	settings.cache = arguments.get("--cache").empty() ? cache_folder() : fs::path(arguments.get("--cache"));
 	settings.scratch = fs::temp_directory_path();
 	settings.povray = find_povray(arguments.get("--povray"));

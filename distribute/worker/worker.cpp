@@ -63,6 +63,12 @@ bool Worker::give_up_now() {
 	return Clock::now() >= deadline;
 }
 
+bool Worker::others_work() {
+	double load = 0;
+	const std::lock_guard lock(mutex);
+	return ::getloadavg(&load, 1) == 1 && load - busy > 0.5 * std::thread::hardware_concurrency();
+}
+
 bool Worker::lost(std::int64_t lease) {
 	const std::lock_guard lock(mutex);
 	return dropped.count(lease) > 0;
@@ -161,6 +167,10 @@ void Worker::serve_slot() {
 	Client sending(settings.server); // goes on while stopping
 	Backoff backoff;
 	while (!stopping) {
+		if (settings.when_idle && others_work()) {
+			pause(5);
+			continue;
+		}
 		try {
 			const double wait = settings.idle_exit > 0 ? std::min(30.0, settings.idle_exit) : 30.0;
 			const json answer = client.post("/v1/workers/" + self.id + "/take", {{"wait", wait}}, wait);

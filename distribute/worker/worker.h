@@ -23,6 +23,7 @@ struct WorkerSettings {
 	double idle_exit = 0; ///< seconds without work after which it leaves; 0: stays
 	double grace = 20;    ///< seconds that a strip may still take after SIGTERM
 	int nice = 19;
+	bool when_idle = false; ///< takes nothing while others use more than half of the cores
 	fs::path povray, cache, scratch;
 };
 
@@ -46,6 +47,7 @@ private:
 	bool lost(std::int64_t lease);
 	void pause(double seconds);
 	bool give_up_now();
+	bool others_work();
 
 	WorkerSettings settings;
 	Hello self;

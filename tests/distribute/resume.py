@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: AGPL-3.0-or-later
 """bhfarm render: a film on one machine; Ctrl-C and the same command goes on where it was; bad input gets one line and leaves nothing."""
 import os
+import pty
 import signal
 import subprocess
 import time
@@ -38,6 +39,20 @@ for frame in (1, 2, 3):
 assert os.listdir(state) == [], "left behind: %s" % os.listdir(state)
 probe = subprocess.run(["ffmpeg", "-i", folder + "/film.mp4", "-f", "null", "-"], capture_output=True, text=True).stderr
 assert "h264" in probe and "100x150" in probe and "frame=    3" in probe, probe
+
+# On a terminal there is progress, on one line that is written over; elsewhere there was none.
+shown, terminal = b"", pty.openpty()
+process = subprocess.Popen([BIN + "/bhfarm", "render", "film.ini", "--strips", "5", "--video", "none", "+O" + WORK + "/again"], cwd=folder, env=ENV, stdout=subprocess.DEVNULL,
+                           stderr=terminal[1])
+os.close(terminal[1])
+while True:
+    try:
+        shown += os.read(terminal[0], 1000)
+    except OSError: # the terminal's other end is closed
+        break
+assert process.wait() == 0 and b"/15 strips" in shown and b"/3 frames" in shown and b"to go" in shown and b"\n" not in shown.strip(), shown
+same(WORK + "/again2.png", WORK + "/reference/film2.png")
+assert "strips" not in done.stderr.replace(done.stderr.split("\n")[0], ""), done.stderr
 
 
 def says(words, text):
