@@ -26,22 +26,84 @@ std::string key_of(const Prepared& p, const fs::path& folder) {
 	return sha256(json(p.scene.spec).dump() + "\n" + folder.string()).substr(0, 24);
 }
 
-std::string wait_for_url(Process& server, const fs::path& file, const fs::path& log) {
-	while (!interrupted) {
-		if (fs::exists(file)) {
-			const std::string url = read_file(file);
-			return url.substr(0, url.find('\n'));
-		}
-		if (server.over(0.02)) {
-			std::string text = fs::exists(log) ? read_file(log) : "";
-			while (!text.empty() && text.back() == '\n')
-				text.pop_back();
-			const std::string line = text.substr(text.rfind('\n') + 1);
-			throw Error(line.empty() ? "the server did not start" : line.substr(std::min(line.size(), line.find(": ") + 2)));
-		}
-	}
-	return "";
+/// Ends a process in order; killed if it will not.
+void end(std::optional<Process>& process, int signal) {
+	if (!process)
+		return;
+	process->signal(signal);
+	if (!process->over(10))
+		process->signal(SIGKILL);
+	process.reset();
 }
+
+/// A server and a worker of one's own, started again should one of them die.
+class LocalFarm {
+public:
+	LocalFarm(const fs::path& state_folder, int slot_count, const std::string& povray_file)
+		: state(state_folder), slots(slot_count), povray(povray_file) {}
+
+	fs::path spool() const { return state / "spool"; }
+	/// Where it listens; empty if we were interrupted first. Throws Error with the server's own last line.
+	std::string start_server() {
+		fs::remove(spool() / "url");
+		Command command;
+		command.words = {(program_folder() / "bhfarm-server").string(), "--listen", address, "--spool", spool().string(),
+			"--lease", "5", "--token-file", (state / "token").string()};
+		command.log = state / "server.log";
+		server.reset();
+		server.emplace(command);
+		while (!interrupted && !fs::exists(spool() / "url"))
+			if (server->over(0.02))
+				throw Error(last_line(command.log));
+		if (interrupted)
+			return "";
+		const std::string text = read_file(spool() / "url");
+		url = text.substr(0, text.find('\n'));
+		address = url.substr(url.find("//") + 2);
+		return url;
+	}
+	void start_worker() {
+		Command command;
+		command.words = {(program_folder() / "bhfarm-worker").string(), "--server", url, "--token-file",
+			(state / "token").string(), "--slots", std::to_string(slots), "--name", "here", "--nice", "0", "--cache",
+			(state / "cache").string()};
+		if (!povray.empty())
+			command.words.insert(command.words.end(), {"--povray", povray});
+		command.log = state / "worker.log";
+		worker.reset();
+		worker.emplace(command);
+	}
+	void mend() {
+		const bool no_server = server->over(0), no_worker = worker->over(0);
+		if ((no_server || no_worker) && ++deaths > 20)
+			throw Error(std::string(no_server ? "the server" : "the worker") +
+						" dies again and again: " + last_line(state / (no_server ? "server.log" : "worker.log")));
+		if (no_server)
+			start_server();
+		if (no_worker)
+			start_worker();
+	}
+	void stop() {
+		end(worker, SIGINT);
+		end(server, SIGTERM);
+	}
+
+private:
+	static std::string last_line(const fs::path& log) {
+		std::string text = fs::exists(log) ? read_file(log) : "";
+		while (!text.empty() && text.back() == '\n')
+			text.pop_back();
+		const std::string line = text.substr(text.rfind('\n') + 1);
+		const size_t name = line.find(": ");
+		return line.empty() ? "it did not start" : name == std::string::npos ? line : line.substr(name + 2);
+	}
+
+	fs::path state;
+	int slots;
+	std::string povray, url, address = "127.0.0.1:0";
+	std::optional<Process> server, worker;
+	int deaths = 0;
+};
 
 void take_over(const fs::path& from, const fs::path& to) {
 	std::error_code other_disk;
@@ -51,16 +113,6 @@ void take_over(const fs::path& from, const fs::path& to) {
 	const fs::path part = to.string() + ".part";
 	fs::copy_file(from, part, fs::copy_options::overwrite_existing);
 	fs::rename(part, to);
-}
-
-/// Ends a process in order; killed if it will not.
-void end(std::optional<Process>& process, int signal) {
-	if (!process)
-		return;
-	process->signal(signal);
-	if (!process->over(10))
-		process->signal(SIGKILL);
-	process.reset();
 }
 
 } // namespace
@@ -85,32 +137,19 @@ int render_command(const Words& words) {
 			throw Error("there is no folder " + folder.string() + " for the pictures");
 
 	spec.client_key = key_of(prepared, output);
-	const fs::path state = state_folder() / "render" / spec.client_key, spool = state / "spool";
+	const fs::path state = state_folder() / "render" / spec.client_key;
 	fs::create_directories(state);
+	fs::permissions(state, fs::perms::owner_all); // the token is nobody else's
 	const FileLock lock(state / "lock", "this very job is being rendered already");
 	write_durably(state / "token", random_hex(32) + "\n");
-	fs::permissions(state / "token", fs::perms::owner_read | fs::perms::owner_write);
-	fs::remove(spool / "url");
 
 	std::signal(SIGINT, interrupt);
 	std::signal(SIGTERM, interrupt);
 	std::signal(SIGHUP, interrupt);
-	Command command;
-	command.words = {(program_folder() / "bhfarm-server").string(), "--listen", "127.0.0.1:0", "--spool", spool.string(),
-		"--token-file", (state / "token").string()};
-	command.log = state / "server.log";
-	std::optional<Process> server(std::in_place, command);
-	const std::string url = wait_for_url(*server, spool / "url", command.log);
-	std::optional<Process> worker;
+	LocalFarm farm(state, slots, a.get("--povray"));
 	json job;
-	if (!interrupted) {
-		command.words = {(program_folder() / "bhfarm-worker").string(), "--server", url, "--token-file",
-			(state / "token").string(), "--slots", std::to_string(slots), "--name", "here", "--nice", "0", "--cache",
-			(state / "cache").string(), "--povray", a.get("--povray")};
-		if (a.get("--povray").empty())
-			command.words.resize(command.words.size() - 2);
-		command.log = state / "worker.log";
-		worker.emplace(command);
+	if (const std::string url = farm.start_server(); !url.empty()) {
+		farm.start_worker();
 		Client client(access_from(url, (state / "token").string(), ""));
 		const std::int64_t id = send_job(client, prepared);
 		job = client.get("/v1/jobs/" + std::to_string(id));
@@ -119,17 +158,16 @@ int render_command(const Words& words) {
 		} else if (const int done = job.value("strips_done", 0); done > 0) {
 			say("going on where it was: " + progress_text(job));
 		}
-		job = follow(client, id, 30, interrupted);
+		job = follow(client, id, 60, interrupted, [&] { farm.mend(); });
 	}
-	end(worker, SIGINT);
-	end(server, SIGTERM);
+	farm.stop();
 	const std::string stage = job.is_object() ? job.value("stage", "") : "";
 	if (stage != "done") {
 		const std::string error = job.is_object() ? job.value("error", "") : "";
 		say(stage == "failed" ? error : "stopped; the same command goes on where it was");
 		return stage == "failed" ? 1 : 130;
 	}
-	const fs::path made = spool / "jobs" / std::to_string(job.value("id", 0)) / "frames";
+	const fs::path made = farm.spool() / "jobs" / std::to_string(job.value("id", 0)) / "frames";
 	for (int i = 0; i < spec.frames(); ++i) {
 		const std::string picture = spec.picture(spec.frame(i));
 		take_over(made / picture, output / picture);

@@ -76,7 +76,8 @@ void ProgressLine::clear() {
 	}
 }
 
-json follow(Client& client, std::int64_t id, double patience, const std::atomic<bool>& stop) {
+json follow(
+	Client& client, std::int64_t id, double patience, const std::atomic<bool>& stop, const std::function<void()>& each_time) {
 	using Clock = std::chrono::steady_clock;
 	ProgressLine progress;
 	auto heard = Clock::now();
@@ -94,6 +95,8 @@ json follow(Client& client, std::int64_t id, double patience, const std::atomic<
 				throw;
 		}
 		std::this_thread::sleep_for(std::chrono::milliseconds(200));
+		if (each_time)
+			each_time();
 	}
 	return job;
 }

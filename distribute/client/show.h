@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -34,8 +35,9 @@ private:
 };
 
 /// Follows a job to its end; returns it as it stands then. Lost connections are tried again for `patience` seconds. Ends early
-/// when `stop` is set.
-nlohmann::json follow(Client& client, std::int64_t job, double patience, const std::atomic<bool>& stop);
+/// when `stop` is set. `each_time`, if there is one, is called five times a second.
+nlohmann::json follow(Client& client, std::int64_t job, double patience, const std::atomic<bool>& stop,
+	const std::function<void()>& each_time = {});
 
 } // namespace farm
 #endif

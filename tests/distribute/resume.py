@@ -40,6 +40,18 @@ assert os.listdir(state) == [], "left behind: %s" % os.listdir(state)
 probe = subprocess.run(["ffmpeg", "-i", folder + "/film.mp4", "-f", "null", "-"], capture_output=True, text=True).stderr
 assert "h264" in probe and "100x150" in probe and "frame=    3" in probe, probe
 
+# Server and worker killed (-9) under its hands: it starts them again.
+process = subprocess.Popen([BIN + "/bhfarm", "render", "film.ini", "--strips", "5", "--video", "none", "+O" + WORK + "/killed"], cwd=folder, env=ENV)
+wait(settled, "three strips", process)
+children = open("/proc/%d/task/%d/children" % (process.pid, process.pid)).read().split()
+assert len(children) == 2, children
+for child in children:
+    os.kill(int(child), signal.SIGKILL)
+    time.sleep(0.5)
+assert process.wait(120) == 0
+for frame in (1, 2, 3):
+    same("%s/killed%d.png" % (WORK, frame), "%s/reference/film%d.png" % (WORK, frame))
+
 # On a terminal there is progress, on one line that is written over; elsewhere there was none.
 shown, terminal = b"", pty.openpty()
 process = subprocess.Popen([BIN + "/bhfarm", "render", "film.ini", "--strips", "5", "--video", "none", "+O" + WORK + "/again"], cwd=folder, env=ENV, stdout=subprocess.DEVNULL,
