@@ -48,7 +48,7 @@ public:
 		fs::remove(spool() / "url");
 		Command command;
 		command.words = {(program_folder() / "bhfarm-server").string(), "--listen", address, "--spool", spool().string(),
-			"--lease", "5", "--token-file", (state / "token").string()};
+			"--lease", "5", "--check-every", "0", "--token-file", (state / "token").string()};
 		command.log = state / "server.log";
 		server.reset();
 		server.emplace(command);

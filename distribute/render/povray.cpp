@@ -83,6 +83,21 @@ std::string error_line(const std::string& log, int code) {
 					 : "povray ended with exit code " + std::to_string(code) + " and no message";
 }
 
+bool did_not_start(const std::string& log) {
+	return log.find("Timed out waiting for worker thread startup") != std::string::npos;
+}
+
+std::pair<int, std::string> run_povray(const Command& command) {
+	for (int tries = 0;; ++tries) {
+		std::error_code ignored;
+		fs::remove(command.log, ignored);
+		const int code = run(command);
+		const std::string log = fs::exists(command.log) ? read_file(command.log) : "";
+		if (code == 0 || !did_not_start(log) || tries == 5)
+			return {code, log};
+	}
+}
+
 std::filesystem::path find_povray(const std::string& given) {
 	const char* variable = std::getenv("BHFARM_POVRAY");
 	const fs::path place = !given.empty()          ? fs::path(given)

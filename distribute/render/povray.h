@@ -21,6 +21,13 @@ Command povray_command(const std::filesystem::path& povray, const std::filesyste
 /// POV-Ray's error message as one line, from what it printed; the exit code's meaning where it said nothing.
 std::string error_line(const std::string& log, int code);
 
+/// Whether povray gave up before it began, because its threads took longer to start than it waits on a busy machine: to be tried
+/// again.
+bool did_not_start(const std::string& log);
+
+/// Runs such a command to its end, again where it did not start; its exit code and what it printed to its log.
+std::pair<int, std::string> run_povray(const Command& command);
+
 /// The program beside ours, or what --povray says; throws Error if there is none.
 std::filesystem::path find_povray(const std::string& given);
 /// "POV-Ray 3.7.0.10.unofficial", the first line of `povray --version`; throws Error if it does not run.

@@ -34,9 +34,9 @@ std::string probe(const std::filesystem::path& povray) {
 	Command command = povray_command(povray, scratch.path() / "probe.ini", scratch.path());
 	command.folder = scratch.path();
 	command.log = scratch.path() / "log";
-	const int code = run(command);
+	const auto [code, log] = run_povray(command);
 	if (code != 0)
-		throw Error(povray.string() + ": " + error_line(fs::exists(command.log) ? read_file(command.log) : "", code));
+		throw Error(povray.string() + ": " + error_line(log, code));
 	return check_strip(task.spec, 0, task.rows, scratch.path() / "probe.png");
 }
 

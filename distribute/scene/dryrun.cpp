@@ -59,10 +59,9 @@ Parsed parse(const SettledScene& scene, int frame, const fs::path& povray) {
 	command.environment["LD_PRELOAD"] = reads_library();
 	command.environment["BHFARM_READS"] = list;
 	const auto start = Clock::now();
-	const int code = run(command);
+	const auto [code, log] = run_povray(command);
 	Parsed parsed;
 	parsed.seconds = since(start);
-	const std::string log = fs::exists(command.log) ? read_file(command.log) : "";
 	if (code != 0) {
 		std::string why = error_line(log, code);
 		// POV-Ray does not say which it did not like.

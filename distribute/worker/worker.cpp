@@ -264,6 +264,11 @@ void Worker::work_on(Client& client, const Task& task) {
 		}
 		const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
 		const std::string output = fs::exists(log) ? read_file(log) : "";
+		if (process.code() != 0 && did_not_start(output)) { // nobody's fault
+			pause(1);
+			insist(task.lease, [&] { return client.post(path + "/return", json::object()); });
+			return;
+		}
 		fs::path whole;
 		for (const auto& entry : fs::directory_iterator(out))
 			if (entry.path().extension() == task.spec.suffix())

@@ -67,8 +67,11 @@ def povray(ini, folder, *words):
     empty = WORK + "/empty.ini"
     with open(empty, "w") as f:
         f.write("Verbose=Off\n")
-    done = subprocess.run([BIN + "/povray", ini, "+L" + include_folder(), "-D", "+WT2", "Reproducible=on", *words], cwd=folder, capture_output=True, text=True,
-                          env=dict(ENV, POVINI=empty))
+    for tries in range(5): # on a busy machine it may give up before it begins
+        done = subprocess.run([BIN + "/povray", ini, "+L" + include_folder(), "-D", "+WT2", "Reproducible=on", *words], cwd=folder, capture_output=True,
+                              text=True, env=dict(ENV, POVINI=empty))
+        if "Timed out waiting for worker thread startup" not in done.stderr:
+            break
     assert done.returncode == 0, done.stderr[-2000:]
 
 
