@@ -78,6 +78,10 @@ public:
 	/// leaves. Returns false, out unchanged, where the atlas does not have it, or it is captured.
 	bool through(const Vec3& x, const Vec3& d, Escape& out) const;
 
+	/// Whether double precision tells a ray's b, of x.d and |x cross d|^2: not from 1e7 b away, nor of d far from unit length.
+	/// (Its last digits there are 1e-9 of b, and 5e-7 of the way, which grows 500-fold at the edge of the band.)
+	static bool tells(double along, double twist2) { return twist2 > 1e-14 * along * along && twist2 > 1e-200 && twist2 < 1e200; }
+
 	const Settings& settings() const { return settings_; }
 	std::size_t bytes() const;
 

@@ -45,7 +45,7 @@ Vec3 Route::direction(const State& at) const {
 bool Route::solve(const Vec3& x, const Vec3& d, const Atlas& atlas, bool ramp) {
 	const Vec3 axis = cross(x, d);
 	const double r2 = dot(x, x), twist2 = dot(axis, axis), s = dot(x, d), r = std::sqrt(r2);
-	if (!(r > 1 + 1e-6))
+	if (!(r > 1 + 1e-6) || !atlas.tells(s, twist2))
 		return false;
 	// |x|^2 |d|^2 times the energy's square, without cancellation near the horizon.
 	const double energy = s * s + twist2 * ((r - 1) / r), twist = std::sqrt(twist2), speed = 1 / std::sqrt(energy);

@@ -7,6 +7,23 @@
 using namespace blackhole;
 
 namespace extremes {
+
+// In ln r and phi, which keep angles, the curve's slope is -du / u. By du, not by 1 / u: near-radial u far out is the closed
+// form's to an error of 5e-13 |du|.
+double distance(const Exact_Orbit& exact, double phi, double r) {
+	double best = 1e300;
+	// Newton's step along the curve, for points so far off (tolerance 0.1) that the first order does not do.
+	for (int i = 0; i < 3; i++) {
+		const auto s = exact.at(phi > 0 ? phi : 0);
+		const double off = s.u - 1 / r, size = std::hypot(s.u, s.du);
+		best = std::min(best, std::fabs(off) / size);
+		if (best < 1e-3)
+			break;
+		phi -= off * s.du / (size * size);
+	}
+	return best;
+}
+
 namespace {
 
 bool finite(const Vec3& a) { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }
@@ -44,22 +61,6 @@ double chord_bound(const Path& path, const Ray& ray) {
 	const Orbit& o = path.orbit();
 	const double density = o.k * std::sqrt(1.5 * o.h / (8 * 0.4 * ray.settings.tolerance)) * largest_u(path);
 	return 2 + (ray.ramp ? 5 : 0) + path.swept() / 1.8 + density * path.nodes().back().s * (1 + 1e-9);
-}
-
-// Perpendicular distance of a point in the orbit's plane from the exact curve, over r: in ln r and phi, which keep angles, the
-// curve's slope is -du / u. By du, not by 1 / u: near-radial u far out is the closed form's to an error of 5e-13 |du|.
-double distance(const Exact_Orbit& exact, double phi, double r) {
-	double best = 1e300;
-	// Newton's step along the curve, for points so far off (tolerance 0.1) that the first order does not do.
-	for (int i = 0; i < 3; i++) {
-		const auto s = exact.at(phi > 0 ? phi : 0);
-		const double off = s.u - 1 / r, size = std::hypot(s.u, s.du);
-		best = std::min(best, std::fabs(off) / size);
-		if (best < 1e-3)
-			break;
-		phi -= off * s.du / (size * size);
-	}
-	return best;
 }
 
 // Distance of x from a path's tangent after the angle phi, or at its end, over |x|.

@@ -71,6 +71,9 @@ struct Figures {
 	void print(const char* name) const;
 };
 
+/// Perpendicular distance from the exact curve of a point in the orbit's plane, at radius r after the angle phi, over r.
+double distance(const blackhole::Exact_Orbit& exact, double phi, double r);
+
 /// What must hold of every allowed ray. Returns what does not, or an empty string. exact: compares with the closed form,
 /// and follows the path back, too.
 std::string check(const Ray& ray, bool exact, blackhole::Path& path, Figures& figures);

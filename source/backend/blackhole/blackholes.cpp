@@ -125,6 +125,12 @@ std::string Blackholes::Prepare(const SceneData& scene, TraceThreadData *thread,
 		if((reached > 0) && (hole.Tolerance < 5.0 * digits))
 			messages.Warning(1, "The black hole at <%g,%g,%g> is so far from the origin that coordinates are good to %.2g of its Schwarzschild radii: no method keeps tolerance %g there; %.1g can be kept. Move the scene towards the origin, or make it larger.",
 			                 hole.Center[X], hole.Center[Y], hole.Center[Z], digits, hole.Tolerance, 5.0 * digits);
+		// Where rays enter the sphere their last digits shift b, and what b is off by turns them 1000 / b_c times as much at the edge
+		// of the 0.1 % band.
+		const DBL rim = DBL_EPSILON / 2.0 * 385.0 * hole.Reach() / hole.Radius;
+		if(hole.Tolerance < rim)
+			messages.Warning(1, "The effect radius of the black hole at <%g,%g,%g>, %.2g Schwarzschild radii, is so large that coordinates out there do not tell where rays go to its tolerance, %g: they do to %.1g.",
+			                 hole.Center[X], hole.Center[Y], hole.Center[Z], hole.Reach() / hole.Radius, hole.Tolerance, rim);
 		if(straddling > 0)
 			messages.Warning(1, "%u object(s) reach into the horizon of the black hole at <%g,%g,%g> and exist outside it only; first: %s.",
 			                 straddling, hole.Center[X], hole.Center[Y], hole.Center[Z], first.c_str());
