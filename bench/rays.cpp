@@ -193,15 +193,16 @@ int time_all(double r, int size, int rounds, bool all) {
 			best = row.name;
 	}
 	// Ours as good as its default: the largest tolerance 1, 2 or 5 times a power of ten that is no worse in the same.
-	std::string match;
-	for (int k = 2; k < 10 && match.empty(); k++)
-		for (int digit : {5, 2, 1}) {
-			const std::string tolerance = words("%s%.0e", "", digit * std::pow(10., -k));
-			if (no_worse(measured("", "path " + tolerance, rays, answers), theirs)) {
-				match = tolerance;
-				break;
+	const auto as_good = [&](const std::string& kind) {
+		for (int k = 2; k < 10; k++)
+			for (int digit : {5, 2, 1}) {
+				const std::string name = kind + words(" %.0e", "", digit * std::pow(10., -k));
+				if (no_worse(measured("", name, rays, answers), theirs))
+					return name;
 			}
-		}
+		return std::string();
+	};
+	const std::string nodes = as_good("nodes"), polyline = as_good("polyline");
 
 	add(std::move(theirs));
 	add(measured("GYOTO default with points", std::string("gyoto-points ") + standard, rays, answers));
@@ -211,10 +212,10 @@ int time_all(double r, int size, int rounds, bool all) {
 		add(measured("path's direction", std::string("path ") + t, rays, answers));
 	for (const char* t : {"1e-03", "1e-04"})
 		add(measured("polyline", std::string("polyline ") + t, rays, answers));
-	if (!match.empty()) {
-		add(measured("nodes as good as GYOTO", "nodes " + match, rays, answers));
-		add(measured("polyline as good as GYOTO", "polyline " + match, rays, answers));
-	}
+	if (!nodes.empty())
+		add(measured("nodes as good as GYOTO", nodes, rays, answers));
+	if (!polyline.empty())
+		add(measured("polyline as good as GYOTO", polyline, rays, answers));
 
 	for (int i = 0; i < rounds; i++)
 		for (Row& row : rows)

@@ -4,6 +4,7 @@
 
 #include "blackhole/chords.h"
 #include "blackhole/closed.h"
+#include "blackhole/route.h"
 
 #include <sstream>
 
@@ -70,26 +71,39 @@ private:
 	Vec3 sum_{0, 0, 0};
 };
 
-/// With chords, no farther from the path than the tolerance allows.
+/// With chords, no farther from the path than the tolerance allows: by the atlas, made beforehand, or else by a path.
 class Polyline : public Direction {
 public:
-	using Direction::Direction;
+	explicit Polyline(double tolerance) : Direction(tolerance), atlas_(settings_) {}
 	void trace(const std::vector<Ray>& rays, std::vector<Answer>& answers) override {
 		for (std::size_t i = 0; i < rays.size(); i++) {
 			Answer& a = answers[i];
+			a.points = 1;
+			if (route_.solve(rays[i].x, rays[i].d, atlas_, false)) {
+				a.failed = false;
+				a.captured = route_.outcome() == Outcome::captured;
+				a.r = far;
+				if (!a.captured)
+					a.direction = route_.end_tangent();
+				walk(route_, a);
+				continue;
+			}
 			solve(rays[i], a);
 			Chords chords(path_, settings_.tolerance, false);
-			Chord chord;
-			unsigned points = 1;
-			while (chords.next(chord)) {
-				sum_ = sum_ + chord.to; // every point is asked for
-				points++;
-			}
-			a.points = points;
+			walk(chords, a);
 		}
 	}
 
 private:
+	template <typename Walk> void walk(Walk& chords, Answer& a) {
+		Chord chord;
+		while (chords.next(chord)) {
+			sum_ = sum_ + chord.to; // every point is asked for
+			a.points++;
+		}
+	}
+	Atlas atlas_;
+	Route route_;
 	Vec3 sum_{0, 0, 0};
 };
 

@@ -3,6 +3,7 @@
 #include "trade.h"
 
 #include "blackhole/frames.h"
+#include "blackhole/route.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -86,42 +87,64 @@ public:
 class Ours : public Tracer {
 public:
 	Ours(Method method, double tolerance, double R)
-		: Tracer(R), settings_{R, tolerance, method}, in_arc_(std::min(16, int(0.12 / std::sqrt(tolerance)))) {}
+		: Tracer(R), settings_{R, tolerance, method}, in_arc_(std::min(32, int(0.25 / std::sqrt(tolerance)))), atlas_(settings_) {
+	}
 
 	void bend(Vec3& x, Vec3& d, const Plane* plane, bool camera, Seen& seen) override {
-		path_.solve(x, d, settings_);
-		Chords walk(path_, settings_.tolerance, !camera);
-		// As bentsearch.cpp: arcs first, and their chords only where they may meet something.
-		if (in_arc_ < 2) {
-			Chord c;
-			while (walk.next(c))
-				if (plane && meets(*plane, c, x, d, seen))
-					return;
-		} else {
-			Arc arc;
-			for (;;) {
-				Chords before = walk;
-				if (!walk.next(arc, in_arc_))
-					break;
-				if (!plane || !near(*plane, arc))
-					continue;
-				Chord c;
-				for (int i = 0; i < arc.chords && before.next(c); i++)
-					if (meets(*plane, c, x, d, seen))
-						return;
-			}
+		if (route_.solve(x, d, atlas_, !camera)) {
+			if (!walk(route_, x, d, plane, seen))
+				leave(route_, x, d, seen);
+			return;
 		}
-		seen.kind = path_.outcome() == Outcome::captured ? Seen::black : Seen::sky;
-		x = path_.end();
-		d = path_.end_tangent();
+		path_.solve(x, d, settings_);
+		Chords chords(path_, settings_.tolerance, !camera);
+		if (!walk(chords, x, d, plane, seen))
+			leave(path_, x, d, seen);
 	}
 
 private:
+	// As bentsearch.cpp: arcs first, fewer chords at a time where they may meet something. Whether something is hit.
+	template <typename Walk> bool walk(Walk& walk, Vec3& x, Vec3& d, const Plane* plane, Seen& seen) const {
+		Chord c;
+		if (in_arc_ < 2) {
+			while (walk.next(c))
+				if (plane && meets(walk, *plane, c, x, d, seen))
+					return true;
+			return false;
+		}
+		const int fewer = std::max(1, int(std::sqrt(in_arc_) + 0.5));
+		Arc arc, part;
+		for (;;) {
+			const typename Walk::Bookmark here = walk.bookmark();
+			if (!walk.next(arc, in_arc_))
+				return false;
+			if (!plane || !near(*plane, arc))
+				continue;
+			walk.go_to(here);
+			for (int i = 0; i < arc.chords; i += part.chords) {
+				const typename Walk::Bookmark there = walk.bookmark();
+				if (!walk.next(part, std::min(fewer, arc.chords - i)))
+					break;
+				if (!near(*plane, part))
+					continue;
+				walk.go_to(there);
+				for (int j = 0; j < part.chords && walk.next(c); j++)
+					if (meets(walk, *plane, c, x, d, seen))
+						return true;
+			}
+		}
+	}
+	template <typename Way> static void leave(const Way& way, Vec3& x, Vec3& d, Seen& seen) {
+		seen.kind = way.outcome() == Outcome::captured ? Seen::black : Seen::sky;
+		x = way.end();
+		d = way.end_tangent();
+	}
 	static bool near(const Plane& plane, const Arc& arc) {
 		const double p = plane.side(arc.from), q = plane.side(arc.to);
 		return p * q <= 0 || std::min(std::fabs(p), std::fabs(q)) <= arc.bulge;
 	}
-	bool meets(const Plane& plane, const Chord& c, Vec3& x, Vec3& d, Seen& seen) const {
+	template <typename Walk>
+	bool meets(const Walk& walk, const Plane& plane, const Chord& c, Vec3& x, Vec3& d, Seen& seen) const {
 		const double p = plane.side(c.from), q = plane.side(c.to);
 		if (p == 0 || (p > 0) == (q > 0))
 			return false;
@@ -132,13 +155,15 @@ private:
 			return false;
 		}
 		x = hit;
-		d = unit((1 - 4 * t + 3 * t * t) * path_.tangent(c.at_from) + (3 * t * t - 2 * t) * path_.tangent(c.at_to) +
+		d = unit((1 - 4 * t + 3 * t * t) * walk.tangent(c.at_from) + (3 * t * t - 2 * t) * walk.tangent(c.at_to) +
 				 (6 * t - 6 * t * t) * unit(c.to - c.from));
 		seen.kind = Seen::object;
 		return true;
 	}
 	Settings settings_;
 	int in_arc_;
+	Atlas atlas_;
+	Route route_;
 	Path path_;
 };
 

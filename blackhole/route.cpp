@@ -16,26 +16,21 @@ Route::State Route::turned(const State& from, double u, double w, double s) cons
 }
 
 // Knot |q|; before the turning point, or on the way in, where q < 0.
-Route::State Route::canonical(int q) const {
+[[gnu::always_inline]] inline Route::State Route::canonical(int q) const {
 	const Knot n = orbit_.knot(q < 0 ? -q : q);
-	const double w = n[1] / std::max(orbit_.b(), 1.0), c = n[2], t = n[3];
+	const double w = n[1] * per_size_, c = n[2], t = n[3];
 	// The interpolated cosine and sine are not quite those of one angle: one step of Newton's towards length 1.
 	const double even = 1.5 - 0.5 * (c * c + t * t);
 	return q < 0 ? State{n[0], -w, even * c, -even * t} : State{n[0], w, even * c, even * t};
 }
 
-Route::State Route::corner(int number) const {
-	if (number == 0)
-		return begin_;
-	if (number == corners_)
-		return end_;
-	return number <= ramps_ ? ramp_[number - 1] : canonical(first_ + number - ramps_ - 1);
+[[gnu::always_inline]] inline Route::State Route::corner(int number) const {
+	if (number > ramps_ && number < corners_)
+		return canonical(first_ + number - ramps_ - 1);
+	return number == 0 ? begin_ : (number == corners_ ? end_ : ramp_[number - 1]);
 }
 
-Vec3 Route::place(const State& at) const {
-	const double r = 1 / at.u;
-	return (r * at.cosine) * f1_ + (r * at.sine) * f2_;
-}
+Vec3 Route::place(const State& at, double r) const { return (r * at.cosine) * f1_ + (r * at.sine) * f2_; }
 
 Vec3 Route::direction(const State& at) const {
 	const double out = -std::max(orbit_.b(), 1.0) * at.w, across = orbit_.b() * at.u;
@@ -53,6 +48,7 @@ bool Route::solve(const Vec3& x, const Vec3& d, const Atlas& atlas, bool ramp) {
 	if (!atlas.find(b, orbit_) || (orbit_.turns() && r <= photon_sphere))
 		return false;
 	tolerance_ = atlas.settings().tolerance;
+	per_size_ = 1 / std::max(b, 1.0);
 	start_ = x;
 	const double u = 1 / r, w = -s * speed / std::max(b, 1.0), edge = 1 / atlas.settings().effect_radius;
 	escapes_ = orbit_.turns() || s > 0;
@@ -92,6 +88,7 @@ bool Route::solve(const Vec3& x, const Vec3& d, const Atlas& atlas, bool ramp) {
 	at_ = 0;
 	state_ = begin_;
 	point_ = x;
+	r_ = r;
 	return true;
 }
 
@@ -126,17 +123,21 @@ double Route::length() const {
 	double sum = 0;
 	Vec3 from = start_;
 	for (int i = 1; i <= corners_; i++) {
-		const Vec3 to = place(corner(i));
+		const State at = corner(i);
+		const Vec3 to = place(at, 1 / at.u);
 		sum += blackhole::length(to - from);
 		from = to;
 	}
 	return sum;
 }
 
+Vec3 Route::tangent(const Mark& mark) const { return direction(corner(static_cast<int>(mark.piece))); }
+
 void Route::go_to(Bookmark there) {
 	at_ = there;
 	state_ = corner(there);
-	point_ = there == 0 ? start_ : place(state_);
+	r_ = 1 / state_.u;
+	point_ = there == 0 ? start_ : place(state_, r_);
 }
 
 bool Route::next(Chord& chord) {
@@ -145,17 +146,17 @@ bool Route::next(Chord& chord) {
 	chord.from = point_;
 	chord.at_from = {static_cast<std::size_t>(at_), 0};
 	const State from = state_;
+	const double r = r_;
 	state_ = corner(++at_);
-	chord.to = point_ = place(state_);
+	r_ = 1 / state_.u;
+	chord.to = point_ = place(state_, r_);
 	chord.at_to = {static_cast<std::size_t>(at_), 0};
 	// No point of a chord is nearer than the smaller end times the cosine of half the angle; that cosine's square is less.
 	const double swept = from.cosine * state_.cosine + from.sine * state_.sine;
-	chord.farthest = 1 / std::min(from.u, state_.u);
-	chord.nearest = (1 + swept) / (2 * std::max(from.u, state_.u));
+	chord.farthest = std::max(r, r_);
+	chord.nearest = 0.5 * (1 + swept) * std::min(r, r_);
 	return true;
 }
-
-Vec2 Route::in_plane(const State& at) const { return {at.cosine / at.u, at.sine / at.u}; }
 
 // The tangent's off a direction in the plane, as a slope.
 double Route::slope(const State& at, Vec2 along) const {
@@ -173,17 +174,19 @@ bool Route::next(Arc& arc, int chords) {
 	// Of more chords an arc would be a poor triangle.
 	arc.chords = std::min({chords, std::max(1, static_cast<int>(0.3 / std::sqrt(tolerance_))), corners_ - at_});
 	const State from = state_;
+	const double r = r_;
 	at_ += arc.chords;
 	state_ = corner(at_);
-	arc.to = point_ = place(state_);
-	const double swept = from.cosine * state_.cosine + from.sine * state_.sine, far = 1 / std::min(from.u, state_.u);
+	r_ = 1 / state_.u;
+	arc.to = point_ = place(state_, r_);
+	const double swept = from.cosine * state_.cosine + from.sine * state_.sine, far = std::max(r, r_);
 	// In the plane, the triangle of the long chord and the tangents at its ends: how steep they are, and its height.
-	const Vec2 along = in_plane(state_) - in_plane(from);
+	const Vec2 along = {r_ * state_.cosine - r * from.cosine, r_ * state_.sine - r * from.sine};
 	const double p = slope(from, along), q = slope(state_, along), l = blackhole::length(along);
 	arc.bulge = (p + q > 0 ? l * p * q / (p + q) : 0) + 0.1 * tolerance_ * far;
 	arc.length = l * (1 + (2 * p * p + 2 * q * q + p * q) / 30);
 	arc.farthest = far + arc.bulge;
-	arc.nearest = (1 + swept) / (2 * std::max(from.u, state_.u));
+	arc.nearest = 0.5 * (1 + swept) * std::min(r, r_);
 	return true;
 }
 

@@ -19,7 +19,7 @@ public:
 
 	Outcome outcome() const { return escapes_ ? Outcome::escaped : Outcome::captured; }
 	/// Where it ends and the unit tangent there, as Path's.
-	Vec3 end() const { return place(end_); }
+	Vec3 end() const { return place(end_, 1 / end_.u); }
 	Vec3 end_tangent() const { return direction(end_); }
 	/// Angle swept around the hole's centre, radians.
 	double swept() const { return swept_; }
@@ -34,7 +34,7 @@ public:
 	using Bookmark = int;
 	Bookmark bookmark() const { return at_; }
 	void go_to(Bookmark there);
-	Vec3 tangent(const Mark& mark) const { return direction(corner(static_cast<int>(mark.piece))); }
+	Vec3 tangent(const Mark& mark) const;
 
 private:
 	// u, du/ds along the ray, and the angle from where the orbit's knots are counted.
@@ -44,15 +44,14 @@ private:
 	State turned(const State& from, double u, double w, double s) const;
 	State canonical(int q) const;
 	State corner(int number) const;
-	Vec3 place(const State& at) const;
+	Vec3 place(const State& at, double r) const;
 	Vec3 direction(const State& at) const;
-	Vec2 in_plane(const State& at) const;
 	double slope(const State& at, Vec2 along) const;
 	void add_ramp(double edge);
 
 	Charted orbit_;
 	Vec3 start_, f1_, f2_; // axes of the orbit's plane, the angle counted from f1
-	double tolerance_ = 0, swept_ = 0;
+	double tolerance_ = 0, swept_ = 0, per_size_ = 1;
 	bool escapes_ = true;
 	State begin_{}, end_{};
 	State ramp_[ramp_count];
@@ -63,6 +62,7 @@ private:
 	int at_ = 0;
 	State state_{};
 	Vec3 point_;
+	double r_ = 1;
 };
 
 } // namespace blackhole
