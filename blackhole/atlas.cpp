@@ -97,7 +97,8 @@ Atlas::Atlas(const Settings& settings) : settings_(settings) {
 void Atlas::chart(Sheet& sheet, bool turning, double from, double to) {
 	// A cubic's error is of fourth order.
 	const double spacing = 0.18 * std::pow(settings_.tolerance, 0.25);
-	sheet.rows = static_cast<int>(std::ceil((to - from) / spacing)) + 4;
+	// Never so few that a row beyond the rim has no three before it, from which its angle goes on.
+	sheet.rows = std::max(2, static_cast<int>(std::ceil((to - from) / spacing))) + 4;
 	sheet.step = (to - from) / (sheet.rows - 4);
 	sheet.first = from - 1.5 * sheet.step;
 	const Integrator& integrator = integrator_of(settings_.method);

@@ -158,6 +158,55 @@ TEST(Route, ArcsHoldTheirChords) {
 	EXPECT_GT(chords, 3 * arcs);
 }
 
+// A sphere so small that only a few rows of orbits leave it.
+TEST(Atlas, ThroughIsTheClosedFormsExitOfTheSmallestSpheres) {
+	int rays = 0;
+	for (double tolerance : {0.1, 1e-2, 5e-4})
+		for (double R = 1.5575; R < 1.5625; R += 1e-4) {
+			const Atlas atlas({R, tolerance, Method::rk4});
+			const double least = critical_b * (1 + Atlas::band), rim = R / std::sqrt(1 - 1 / R);
+			for (int i = 0; i < 100; i++) {
+				const double across = (least + (rim - least) * (i + 0.5) / 100) / R;
+				const Vec3 x{R, 0, 0}, d = unit({-std::sqrt(1 - across * across * (1 - 1 / R)), across, 0});
+				Escape charted, exact;
+				if (!(rim > least) || !atlas.through(x, d, charted))
+					continue;
+				ASSERT_TRUE(escape(x, d, R, exact)) << R << " " << i;
+				rays++;
+				ASSERT_LT(length(charted.tangent - exact.tangent), 0.01 * tolerance) << R << " " << i;
+			}
+		}
+	EXPECT_GT(rays, 10000);
+}
+
+// Where light hardly bends knots are far apart, and rays end between them: within what chords leave of the tolerance.
+TEST(Route, KeepsItsDirectionFarOut) {
+	std::mt19937_64 random(7);
+	std::uniform_real_distribution<double> u(0, 1);
+	for (double tolerance : {5e-5, 5e-4, 5e-3})
+		for (double R : {1e3, 1e4, 1e6}) {
+			const Atlas atlas({R, tolerance, Method::rk4});
+			double worst = 0;
+			int rays = 0;
+			for (int i = 0; i < 20000; i++) {
+				const double b = 2.7 * std::pow(R / 3, u(random)), r = i % 2 ? R : b * std::pow(R / b, u(random));
+				const double across = b / r, square = 1 - across * across * (1 - 1 / r);
+				if (square < 0)
+					continue;
+				const Vec3 x{r, 0, 0}, d = unit({(i % 4 ? -1 : 1) * std::sqrt(square), across, 0});
+				Route route;
+				Escape exact;
+				if (!route.solve(x, d, atlas, false))
+					continue;
+				ASSERT_TRUE(escape(x, d, R, exact)) << r << " " << b;
+				rays++;
+				worst = std::max(worst, length(route.end_tangent() - exact.tangent));
+			}
+			EXPECT_GT(rays, 8000);
+			EXPECT_LT(worst, 0.25 * tolerance) << R << " " << tolerance;
+		}
+}
+
 TEST(Atlas, IsNotMadeWhereItCannotKeepThePromise) {
 	EXPECT_EQ(Atlas({1000, 1e-6, Method::rk4}).bytes(), 0u);
 	EXPECT_EQ(Atlas({1000, 1e-3, Method::exact}).bytes(), 0u);
