@@ -11,7 +11,8 @@ namespace {
 constexpr double narrowest = 0.02, widest = 1e5; // b; few rays are radial to this degree, and none bends that far out
 constexpr double hem = 0.4; // to what u knots stand closer, and to half of what beyond infinity orbits are charted, about in 1/b
 constexpr double per_radian = 3;
-// The chords' part of the tolerance. Charted orbits are off by a few hundredths of it, not by the half that chords.h allows for.
+// The chords' part of the tolerance. Charted orbits are off by a few hundredths of it, an eighth at most, not by the half that
+// chords.h allows.
 constexpr double share = 0.75;
 constexpr int most_knots = 2000;
 

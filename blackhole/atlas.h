@@ -20,7 +20,7 @@
 namespace blackhole {
 
 /// A point of a charted orbit: u; b du/dphi going outward (minus dr/dlambda at unit energy; unlike du/ds it is smooth in b);
-/// cosine and sine of the angle. In single precision, 6e-8: a hundredth of the finest tolerance's 1e-5 share, and a line of cache
+/// cosine and sine of the angle. In single precision, 6e-8: a thousandth of the finest tolerance, and a line of cache
 /// for four.
 using Knot = float __attribute__((vector_size(16)));
 
