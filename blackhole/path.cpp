@@ -14,6 +14,7 @@ constexpr double most_swept = 45;
 // 1e-18 / b there, while all that such a ray bends, b^2, is nothing, and its steps are exact.
 constexpr double most_swept_exactly = 18, least_b_exactly = 1e-6;
 constexpr std::size_t most_steps = 200000; // no method should come near it
+constexpr double no_length = 1e-300;       // in s, of a path that starts where it ends
 
 } // namespace
 
@@ -34,6 +35,11 @@ bool Path::trace(const Settings& settings) {
 	nodes_.clear();
 	nodes_.push_back({0, orbit_.u, orbit_.w, acceleration(orbit_.u, plan.k2)});
 	emerged_ = 0;
+	if (const Node& first = nodes_.front(); first.u <= edge && first.w <= 0) {
+		// Leaves from the sphere itself, where a crossing to be found, if it is tangential, were no better than a last digit's root.
+		nodes_.push_back({no_length, edge, first.w, first.a});
+		return outcome_ == Outcome::escaped;
+	}
 	bool within = inside_;
 	while (nodes_.size() < most_steps) {
 		const Node before = nodes_.back(), next = integrator.step(before, plan);
@@ -79,7 +85,7 @@ bool Path::trace_exactly(const Settings& settings) {
 	nodes_.clear();
 	nodes_.push_back({0, orbit_.u, orbit_.w, acceleration(orbit_.u, k * k)});
 	const bool comes_out = inside_ && last > 0;
-	emerged_ = comes_out ? std::max(exact_->swept(1, false) / k, 1e-300) : 0;
+	emerged_ = comes_out ? std::max(exact_->swept(1, false) / k, no_length) : 0;
 	while (nodes_.size() < most_steps) {
 		const Node& n = nodes_.back();
 		const double s = n.s + 1 / (k * std::sqrt(1 + 3 * n.u) / apart + 1);
@@ -89,7 +95,7 @@ bool Path::trace_exactly(const Settings& settings) {
 	}
 	Node end = last > 0 ? node(last) : nodes_.front();
 	if (!(last > 0))
-		end.s = 1e-300; // a path of no length: it starts where it ends, or never leaves the horizon
+		end.s = no_length; // it starts where it ends, or never leaves the horizon
 	if (outcome_ == Outcome::escaped || last > 0)
 		end.u = outcome_ == Outcome::escaped ? 1 / settings.effect_radius : 1;
 	nodes_.push_back(end);

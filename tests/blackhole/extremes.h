@@ -7,6 +7,7 @@
 
 #include "blackhole/chords.h"
 #include "blackhole/closed.h"
+#include "blackhole/route.h"
 
 #include <istream>
 #include <random>
@@ -77,6 +78,24 @@ double distance(const blackhole::Exact_Orbit& exact, double phi, double r);
 /// What must hold of every allowed ray. Returns what does not, or an empty string. exact: compares with the closed form,
 /// and follows the path back, too.
 std::string check(const Ray& ray, bool exact, blackhole::Path& path, Figures& figures);
+
+/// As Figures, of rays by an atlas; the doubles over the tolerance.
+struct Charted_Figures {
+	long rays = 0, charted = 0, through = 0, chords = 0;
+	double direction = 0, place = 0, off = 0, drift = 0;
+	void add(const Charted_Figures& other);
+	/// As those of Figures.
+	std::string line() const;
+	bool read(std::istream& in);
+	void print(const char* name) const;
+};
+
+/// A ray of a Kind for an atlas of these settings, or of the kind after the last: aimed from the effect sphere at the hole, b to
+/// 20 Rs. entering: one from beyond the sphere is put on it. Returns false if it is not allowed().
+bool generate(int kind, const blackhole::Settings& settings, bool entering, std::mt19937_64& random, Ray& ray);
+
+/// What must hold of an allowed ray where the atlas has it: what it may not know it must leave to a path. As check() above.
+std::string check(const Ray& ray, const blackhole::Atlas& atlas, Charted_Figures& worst);
 
 } // namespace extremes
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-/// As extremes_test.cpp, with a hundred million rays in slices of a hundred thousand. Each finished slice is a few lines in a
-/// file, and what is there is not done again: a run can be stopped and taken up. docs/stability.md has the figures.
+/// As extremes_test.cpp, with a hundred million rays in slices of a hundred thousand, and a tenth as many by charts. Each
+/// finished slice is a few lines in a file, and what is there is not done again: a run can be stopped and taken up.
+/// docs/stability.md has the figures.
 #include "extremes.h"
 
 #include <unistd.h>
@@ -29,6 +30,7 @@ Checks N rays (100000000) at the extremes, for S seconds at most (no limit), wit
 
 struct Slice {
 	Figures figures[kinds];
+	Charted_Figures charted;
 	std::vector<std::string> failures;
 };
 
@@ -47,6 +49,21 @@ Slice run(long number, long rays) {
 				slice.failures.push_back(std::string(kind_names[kind]) + ": " + what + ": " + ray.text());
 		}
 	}
+	// One hole's charts a slice, of any settings: a tenth as many rays as the slice has.
+	std::mt19937_64 random(std::uint64_t(1000 * number));
+	std::uniform_real_distribution<double> u(0, 1);
+	const blackhole::Settings settings{u(random) < 0.2 ? 1.5 + std::pow(10, -8 * u(random)) : 1.5 * std::pow(10, 15 * u(random)),
+		blackhole::Atlas::finest * std::pow(2000, u(random)),
+		u(random) < 0.5 ? blackhole::Method::rk4 : blackhole::Method::dopri5};
+	const blackhole::Atlas atlas(settings);
+	for (long i = 0; slice.charted.rays < rays / 10 && i < rays; i++) {
+		Ray ray;
+		if (!generate(int(i % (kinds + 1)), settings, i % 4 == 0, random, ray))
+			continue;
+		const std::string what = check(ray, atlas, slice.charted);
+		if (!what.empty() && slice.failures.size() < 20)
+			slice.failures.push_back("charted: " + what + ": " + ray.text());
+	}
 	return slice;
 }
 
@@ -56,7 +73,7 @@ std::string engine() {
 	Figures all;
 	for (const Figures& f : slice.figures)
 		all.add(f);
-	return "engine " + all.line();
+	return "engine " + all.line() + " " + slice.charted.line();
 }
 
 double number(const char* name, const char* text) {
@@ -97,6 +114,7 @@ int main(int argc, char** argv) {
 	const std::string mark = engine();
 	std::set<long> done;
 	Figures figures[kinds];
+	Charted_Figures charted;
 	long failures = 0;
 	{
 		std::ifstream in(file);
@@ -106,6 +124,7 @@ int main(int argc, char** argv) {
 			return 2;
 		}
 		std::vector<Figures> part;
+		Charted_Figures part_charted;
 		while (std::getline(in, line)) { // a slice counts when its last line is there
 			std::istringstream words(line);
 			std::string word;
@@ -118,10 +137,14 @@ int main(int argc, char** argv) {
 				failures++;
 			} else if (word == "kind" && f.read(words))
 				part.push_back(f);
+			else if (word == "charted" && part_charted.read(words))
+				continue;
 			else if (word == "slice" && words >> slice && part.size() == kinds) {
-				if (done.insert(slice).second)
+				if (done.insert(slice).second) {
 					for (int k = 0; k < kinds; k++)
 						figures[k].add(part[std::size_t(k)]);
+					charted.add(part_charted);
+				}
 				part.clear();
 			} else
 				part.clear();
@@ -157,6 +180,8 @@ int main(int argc, char** argv) {
 				out << "kind " << slice.figures[k].line() << "\n";
 				figures[k].add(slice.figures[k]);
 			}
+			out << "charted " << slice.charted.line() << "\n";
+			charted.add(slice.charted);
 			out << "slice " << i << std::endl;
 			failures += long(slice.failures.size());
 			done.insert(i);
@@ -182,6 +207,7 @@ int main(int argc, char** argv) {
 		all.add(figures[kind]);
 	}
 	all.print("all");
+	charted.print("charted");
 	std::printf("[ extremes ] %zu of %ld slices done (%ld in this run, %.0f s), %ld rays, %ld failures\n", done.size(), slices,
 		made, passed(), all.rays, failures);
 	return failures == 0 && all.rays > 0 ? 0 : 1;

@@ -128,6 +128,18 @@ TEST(Extremes_Found, StaysMended) {
 		{{0x1.22a6abf990559p-1, 0x1.89c3a328cf893p-1, 0x1.2cc5944a6a61fp-2},
 			{-0x1.bcf5348e9e96cp-2, -0x1.2d682a5fe5914p-1, -0x1.cc73a06d0ed8ep-3},
 			{1.5 + ulp, 1e-4, Method::exact}}, // energy lost
+		// The five of the first hundred million: the method's error at the far end, seen from the middle of a chord past the
+		// hole; a crossing looked for where the ray stands on it.
+		{{0x1.16c882a5381a1p+29, 0, 0}, {-0x1.fc9b428e6d682p-1, 0x1.d6ceea7e08946p-4, 0},
+			{0x1.16c882a5381a1p+29, 0x1.ad4a55318d535p-19, Method::rk4}},
+		{{0x1.954299f500855p+31, 0, 0}, {-0x1.42e1c269ed0dp-100, 0x1.04691635938aep-103, 0},
+			{0x1.954299f500855p+31, 0x1.ac5a242c33735p-18, Method::rk4}},
+		{{-0x1.ae81fa48de422p+34, 0x1.1f37f531b073fp+34, 0x1.da0655580fecap+34},
+			{0x1.f631a483ca0c2p-666, -0x1.ae7c39e252baap-667, -0x1.19006d8c3d4c9p-665},
+			{0x1.5ee7188d38fccp+35, 0x1.a2825077046dbp-29, Method::rk4}},
+		{{0x1.0dcd2d5253e6fp+35, 0, 0}, {-0x0.0125335d0607fp-1022, 0x0.001bfe93493aap-1022, 0},
+			{0x1.0dcd2d5253e6fp+35, 0x1.3d2541f9c34ccp-20, Method::rk4}},
+		{{0x1.10c849f216d96p+1, 0, 0}, {0, 1, 0}, {0x1.10c849f216d96p+1, 0x1.a2c990d82e4e8p-29, Method::dopri5}},
 	};
 	Path path;
 	Figures figures;

@@ -82,6 +82,19 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 	if (!what.empty())
 		fail(ray, what);
 
+	// The same by charts, of one of a few holes: they take a while to make.
+	static const Atlas atlases[] = {Atlas({1000, 1e-3, Method::rk4}), Atlas({10, 1e-4, Method::dopri5}),
+		Atlas({1.6, 1e-2, Method::rk4}), Atlas({1e12, 5e-4, Method::rk4})};
+	const Atlas& atlas = atlases[bytes.byte() % 4];
+	extremes::Ray charted = ray;
+	charted.settings = atlas.settings();
+	if (const double R = charted.settings.effect_radius; r > R)
+		charted.x = (R / r) * charted.x;
+	extremes::Charted_Figures charted_figures;
+	if (const std::string wrong = extremes::allowed(charted) ? extremes::check(charted, atlas, charted_figures) : "";
+		!wrong.empty())
+		fail(charted, "charted: " + wrong);
+
 	// frames.h, for unit directions outside the horizon: there and back.
 	Vec3 falling;
 	const Vec3 unit_d = unit(ray.d);

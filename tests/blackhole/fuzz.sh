@@ -14,7 +14,7 @@ if ! command -v clang++ >/dev/null || ! echo 'extern "C" int LLVMFuzzerTestOneIn
 	echo "fuzz: skipped: no clang++ with libFuzzer here (Debian: clang and libclang-rt-dev)"
 	exit 77
 fi
-sources=(blackhole/*.cpp tests/blackhole/{extremes,extreme_checks,extreme_rays,fuzz}.cpp)
+sources=(blackhole/*.cpp tests/blackhole/{extremes,extreme_checks,extreme_rays,extreme_routes,fuzz}.cpp)
 if [ ! -x "$fuzz" ] || [ -n "$(find blackhole tests/blackhole -newer "$fuzz" -name '*.[ch]*')" ]; then
 	clang++ -std=gnu++17 -O1 -g1 -ffp-contract=off -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all \
 		-I. -Itests/blackhole "${sources[@]}" -o "$fuzz.$$"
