@@ -10,9 +10,9 @@ namespace {
 
 // The rule takes the curvature to be that of all of a chord. Where one chord would take a ray past the hole and far out again,
 // all of the bend is in its middle: it strays by r_far / b there, which may be hundreds of tolerance * b. So no chord sweeps more
-// than about a right angle, unless the bend is nothing at any radius: slack, in b^2 tolerance / r_far. What the method does wrong at the
-// far end, half of tolerance * r_far at most, is half as much in the middle, where b is what counts: so none goes past the hole to
-// more than about 2.6 b (where 2 acos(b / r_far) = 1.8 + 1.5 b / r_far).
+// than about a right angle, unless the bend is nothing at any radius: slack, in b^2 tolerance / r_far. What the method does wrong
+// at the far end, half of tolerance * r_far at most, is half as much in the middle, where b is what counts: so none goes past the
+// hole to more than about 2.6 b (where 2 acos(b / r_far) = 1.8 + 1.5 b / r_far).
 constexpr double widest = 1.8, slack = 0.35, slack_far = 1.5;
 // The most that an arc of several chords may sweep.
 constexpr double widest_arc = 0.7;

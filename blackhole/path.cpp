@@ -36,7 +36,8 @@ bool Path::trace(const Settings& settings) {
 	nodes_.push_back({0, orbit_.u, orbit_.w, acceleration(orbit_.u, plan.k2)});
 	emerged_ = 0;
 	if (const Node& first = nodes_.front(); first.u <= edge && first.w <= 0) {
-		// Leaves from the sphere itself, where a crossing to be found, if it is tangential, were no better than a last digit's root.
+		// Leaves from the sphere itself, where a crossing to be found, if it is tangential, were no better than a last digit's
+		// root.
 		nodes_.push_back({no_length, edge, first.w, first.a});
 		return outcome_ == Outcome::escaped;
 	}
