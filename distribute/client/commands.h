@@ -21,6 +21,7 @@ int log_command(const Words& words);
 int fetch_command(const Words& words);
 int drain_command(const Words& words);
 int remove_command(const Words& words);
+int slurm_command(const Words& words);
 int token_command(const Words& words);
 int source_command(const Words& words);
 /// cancel, pause, resume, retry.

@@ -20,6 +20,7 @@ const char* const usage = R"(bhfarm COMMAND ...          'bhfarm COMMAND --help'
   cancel, pause, resume, retry, remove  JOB
   workers                   who renders
   drain   WORKER            it finishes what it has and leaves
+  slurm   --workers N       starts workers as a job of Slurm's
   token   new               prints a token for server and workers
   source                    what runs here, as the AGPL asks
 )";
@@ -28,8 +29,8 @@ int dispatch(const std::string& command, const farm::Words& words) {
 	using namespace farm;
 	const std::pair<const char*, int (*)(const Words&)> commands[] = {{"render", render_command}, {"submit", submit_command},
 		{"status", status_command}, {"watch", watch_command}, {"fetch", fetch_command}, {"log", log_command},
-		{"workers", workers_command}, {"drain", drain_command}, {"remove", remove_command}, {"token", token_command},
-		{"source", source_command}};
+		{"workers", workers_command}, {"drain", drain_command}, {"remove", remove_command}, {"slurm", slurm_command},
+		{"token", token_command}, {"source", source_command}};
 	for (const auto& [name, function] : commands)
 		if (command == name)
 			return function(words);

@@ -226,6 +226,11 @@ Access_to access_from(const std::string& url, const std::string& token_file, con
 	return access;
 }
 
+bool on_loopback(const std::string& address) {
+	const std::string host = address.substr(0, address.rfind(':'));
+	return host == "localhost" || host == "[::1]" || address == "[::1]" || host.rfind("127.", 0) == 0;
+}
+
 std::string url_encode(const std::string& text) {
 	static const char digits[] = "0123456789ABCDEF";
 	std::string out;

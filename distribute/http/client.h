@@ -64,6 +64,9 @@ private:
 /// for a token file that cannot be read.
 Access_to access_from(const std::string& url, const std::string& token_file, const std::string& authority);
 
+/// Whether HOST:PORT (or HOST) is this machine alone.
+bool on_loopback(const std::string& address);
+
 /// %XX for what may not stand in a path's part.
 std::string url_encode(const std::string& text);
 

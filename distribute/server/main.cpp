@@ -2,6 +2,7 @@
 // bhfarm-server: keeps the ledger, lends strips, stitches frames.
 #include "distribute/common/arguments.h"
 #include "distribute/common/error.h"
+#include "distribute/http/client.h"
 #include "distribute/http/server.h"
 #include "distribute/server/api.h"
 
@@ -40,11 +41,6 @@ std::vector<std::string> read_tokens(const std::string& given) {
 	if (tokens.empty())
 		throw Error("the token file " + file + " has no token; 'bhfarm token new' makes one");
 	return tokens;
-}
-
-bool on_loopback(const std::string& address) {
-	const std::string host = address.substr(0, address.rfind(':'));
-	return host == "localhost" || host == "[::1]" || host.rfind("127.", 0) == 0;
 }
 
 int serve(const Arguments& arguments) {
