@@ -39,8 +39,8 @@ void end(std::optional<Process>& process, int signal) {
 /// A server and a worker of one's own, started again should one of them die.
 class LocalFarm {
 public:
-	LocalFarm(const fs::path& state_folder, int slot_count, const std::string& povray_file)
-		: state(state_folder), slots(slot_count), povray(povray_file) {}
+	LocalFarm(const fs::path& state_folder, int slot_count, const std::string& povray_file, bool with_fence)
+		: state(state_folder), slots(slot_count), povray(povray_file), fenced(with_fence) {}
 
 	fs::path spool() const { return state / "spool"; }
 	/// Where it listens; empty if we were interrupted first. Throws Error with the server's own last line.
@@ -69,6 +69,10 @@ public:
 			(state / "cache").string()};
 		if (!povray.empty())
 			command.words.insert(command.words.end(), {"--povray", povray});
+		// One's own scene may have all of one's own machine.
+		command.words.insert(command.words.end(), {"--memory-limit", "0"});
+		if (!fenced)
+			command.words.push_back("--no-sandbox");
 		command.log = state / "worker.log";
 		worker.reset();
 		worker.emplace(command);
@@ -101,6 +105,7 @@ private:
 	fs::path state;
 	int slots;
 	std::string povray, url, address = "127.0.0.1:0";
+	bool fenced;
 	std::optional<Process> server, worker;
 	int deaths = 0;
 };
@@ -146,7 +151,7 @@ int render_command(const Words& words) {
 	std::signal(SIGINT, interrupt);
 	std::signal(SIGTERM, interrupt);
 	std::signal(SIGHUP, interrupt);
-	LocalFarm farm(state, slots, a.get("--povray"));
+	LocalFarm farm(state, slots, a.get("--povray"), prepared.sandbox.fences());
 	json job;
 	if (const std::string url = farm.start_server(); !url.empty()) {
 		farm.start_worker();

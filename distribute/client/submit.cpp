@@ -21,6 +21,7 @@ const std::vector<Option> scene_options = {
 	{"--video", "FILE", "the film, .mp4; default the pictures' name; 'none' for none", ""},
 	{"--fps", "N", "the film's frames a second", "25"},
 	{"--assets", "GLOB", "further files the scene may read, relative to it; may be given again", ""},
+	{"--no-sandbox", "", "no fence around the scene, as with povray by hand", ""},
 	{"--povray", "FILE", "the povray to run; default the one beside this program", ""},
 };
 
@@ -72,7 +73,9 @@ Prepared prepare(const Arguments& arguments, int slots) {
 		if (p.film.extension() != ".mp4")
 			throw Error("--video is '" + video + "'; its name must end in .mp4");
 	}
-	p.files = gather(p.scene, find_povray(arguments.get("--povray")), arguments.all("--assets"));
+	const fs::path povray = find_povray(arguments.get("--povray"));
+	p.sandbox = sandbox_for_own_scenes(povray, !arguments.has("--no-sandbox"));
+	p.files = gather(p.scene, {povray, p.sandbox}, arguments.all("--assets"));
 	spec.strip_rows = strip_rows(spec, p.files, arguments.get("--strips"), slots);
 	spec.check();
 	for (const auto& remark : p.scene.remarks)

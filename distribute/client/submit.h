@@ -15,6 +15,7 @@ extern const std::vector<Option> scene_options;
 struct Prepared {
 	SettledScene scene; ///< its spec is complete
 	Gathered files;
+	Sandbox sandbox;            ///< that it was tried out in
 	std::filesystem::path film; ///< where the film is to go; empty: there is none
 };
 

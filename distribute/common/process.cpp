@@ -3,12 +3,15 @@
 
 #include "distribute/common/error.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
 #include <fcntl.h>
+#include <linux/close_range.h>
 #include <poll.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -62,6 +65,23 @@ Process::Process(const Command& command) {
 				::_exit(127);
 			::dup2(out, 1);
 			::dup2(out, 2);
+		}
+		unsigned first_unused = 3;
+		for (const auto& [descriptor, file] : command.opened) {
+			const int d = ::open(file.c_str(), O_RDONLY);
+			if (d < 0 || ::dup2(d, descriptor) < 0)
+				::_exit(127);
+			first_unused = static_cast<unsigned>(descriptor) + 1;
+		}
+		// What other threads have open is none of its business.
+		::close_range(first_unused, ~0U, CLOSE_RANGE_CLOEXEC);
+		for (const auto& [what, most] : command.limits) {
+			rlimit limit{};
+			if (::getrlimit(static_cast<__rlimit_resource>(what), &limit) == 0) {
+				limit.rlim_cur = std::min<rlim_t>(most, limit.rlim_max);
+				limit.rlim_max = limit.rlim_cur;
+				::setrlimit(static_cast<__rlimit_resource>(what), &limit);
+			}
 		}
 		if (!command.folder.empty() && ::chdir(command.folder.c_str()) != 0)
 			::_exit(127);

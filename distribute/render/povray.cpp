@@ -3,6 +3,7 @@
 
 #include "distribute/common/error.h"
 #include "distribute/common/files.h"
+#include "distribute/scene/ini.h"
 
 #include <cstdlib>
 #include <sstream>
@@ -40,11 +41,13 @@ std::string strip_ini(const Task& task, const std::filesystem::path& picture) {
 	return ini;
 }
 
+std::string scene_in(const std::filesystem::path& folder) { return ini_line({"Library_Path", folder.string()}) + "\n"; }
+
 Command povray_command(const std::filesystem::path& povray, const std::filesystem::path& ini, const std::filesystem::path& home) {
 	Command command;
 	command.words = {povray.string()};
-	command.environment = {
-		{"POVINI", ini.string()}, {"HOME", home.string()}, {"POVINC", home.string()}, {"DISPLAY", ""}, {"LC_ALL", "C"}};
+	command.environment = {{"POVINI", ini.string()}, {"HOME", home.string()}, {"POVINC", home.string()},
+		{"POV_TEMP_DIR", home.string()}, {"DISPLAY", ""}, {"LC_ALL", "C"}};
 	return command;
 }
 
@@ -108,12 +111,12 @@ std::filesystem::path find_povray(const std::string& given) {
 	return fs::absolute(place);
 }
 
-std::string povray_version(const std::filesystem::path& povray) {
+std::string povray_version(const std::filesystem::path& povray, const Sandbox& sandbox) {
 	const ScratchFolder scratch(fs::temp_directory_path());
 	Command command = povray_command(povray, scratch.path() / "none", scratch.path());
 	command.words.push_back("--version");
 	command.log = scratch.path() / "log";
-	const int code = run(command);
+	const int code = run(sandbox.fenced(command, {{scratch.path()}, {}, false}));
 	std::istringstream lines(fs::exists(command.log) ? read_file(command.log) : "");
 	for (std::string line; std::getline(lines, line);)
 		if (line.rfind("POV-Ray ", 0) == 0)

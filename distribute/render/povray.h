@@ -5,6 +5,7 @@
 
 #include "distribute/common/process.h"
 #include "distribute/protocol/messages.h"
+#include "distribute/sandbox/sandbox.h"
 
 #include <filesystem>
 
@@ -15,7 +16,11 @@ std::string povray_ini(const JobSpec& spec, int frame);
 /// Likewise for rows [row, row + rows), written as a PNG or EXR of the whole frame's size to `picture` (a path without spaces).
 std::string strip_ini(const Task& task, const std::filesystem::path& picture);
 
-/// povray with that INI file and no other, a home of its own, and no display.
+/// The line by which povray finds what it asks for in a scene's folder while it runs elsewhere.
+std::string scene_in(const std::filesystem::path& folder);
+
+/// povray with that INI file and no other, a home of its own, and no display. Its
+/// temporary files go to `home` too.
 Command povray_command(const std::filesystem::path& povray, const std::filesystem::path& ini, const std::filesystem::path& home);
 
 /// POV-Ray's error message as one line, from what it printed; the exit code's meaning where it said nothing.
@@ -31,7 +36,7 @@ std::pair<int, std::string> run_povray(const Command& command);
 /// The program beside ours, or what --povray says; throws Error if there is none.
 std::filesystem::path find_povray(const std::string& given);
 /// "POV-Ray 3.7.0.10.unofficial", the first line of `povray --version`; throws Error if it does not run.
-std::string povray_version(const std::filesystem::path& povray);
+std::string povray_version(const std::filesystem::path& povray, const Sandbox& sandbox);
 
 } // namespace farm
 #endif

@@ -22,7 +22,7 @@ superellipsoid { <0.3, 0.7> scale 1.2 translate <-3, -1, 1> pigment { rgbt <0.8,
 
 } // namespace
 
-std::string probe(const std::filesystem::path& povray) {
+std::string probe(const std::filesystem::path& povray, const Sandbox& sandbox) {
 	const ScratchFolder scratch(fs::temp_directory_path());
 	Task task;
 	task.spec.options = {"Input_File_Name=probe.pov", "Antialias=On", "Sampling_Method=2"};
@@ -34,7 +34,7 @@ std::string probe(const std::filesystem::path& povray) {
 	Command command = povray_command(povray, scratch.path() / "probe.ini", scratch.path());
 	command.folder = scratch.path();
 	command.log = scratch.path() / "log";
-	const auto [code, log] = run_povray(command);
+	const auto [code, log] = run_povray(sandbox.fenced(command, {{}, {scratch.path()}, false}));
 	if (code != 0)
 		throw Error(povray.string() + ": " + error_line(log, code));
 	return check_strip(task.spec, 0, task.rows, scratch.path() / "probe.png");

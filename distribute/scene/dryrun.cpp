@@ -23,15 +23,20 @@ fs::path reads_library() {
 	throw Error("bhfarm-reads.so is missing beside bhfarm; build or install again");
 }
 
-/// The scene where it lies, with everything said about it so far.
-Command scene_command(const SettledScene& scene, std::string ini, const fs::path& povray, const fs::path& scratch) {
+/// The scene, with everything said about it so far, behind the fence in a folder of its own.
+Command scene_command(const SettledScene& scene, std::string ini, const Trier& trier, const fs::path& scratch,
+	const std::map<std::string, std::string>& environment = {}) {
+	ini += scene_in(scene.scene.parent_path());
 	for (const auto& library : scene.libraries)
-		ini += ini_line({"Library_Path", library.string()}) + "\n";
+		ini += scene_in(library);
 	write_durably(scratch / "dry.ini", ini + "Output_To_File=Off\n");
-	Command command = povray_command(povray, scratch / "dry.ini", scratch);
-	command.folder = scene.scene.parent_path();
+	const fs::path here = scratch / "here";
+	fs::create_directory(here);
+	Command command = povray_command(trier.povray, scratch / "dry.ini", here);
+	command.folder = here;
 	command.log = scratch / "log";
-	return command;
+	command.environment.insert(environment.begin(), environment.end());
+	return trier.sandbox.fenced(command, {{}, {scratch}, true});
 }
 
 std::string flat(const std::string& text) {
@@ -46,7 +51,7 @@ double since(Clock::time_point start) { return std::chrono::duration<double>(Clo
 
 } // namespace
 
-Parsed parse(const SettledScene& scene, int frame, const fs::path& povray) {
+Parsed parse(const SettledScene& scene, int frame, const Trier& trier) {
 	const ScratchFolder scratch(fs::temp_directory_path());
 	const fs::path list = scratch.path() / "reads";
 	std::string ini = povray_ini(scene.spec, frame) + "Antialias=Off\nQuality=0\n";
@@ -55,9 +60,8 @@ Parsed parse(const SettledScene& scene, int frame, const fs::path& povray) {
 		ini += "Start_Row=" + std::to_string(scene.spec.height) + "\n";
 	if (scene.spec.width > 1)
 		ini += "Start_Column=" + std::to_string(scene.spec.width) + "\n";
-	Command command = scene_command(scene, ini, povray, scratch.path());
-	command.environment["LD_PRELOAD"] = reads_library();
-	command.environment["BHFARM_READS"] = list;
+	const Command command =
+		scene_command(scene, ini, trier, scratch.path(), {{"LD_PRELOAD", reads_library()}, {"BHFARM_READS", list}});
 	const auto start = Clock::now();
 	const auto [code, log] = run_povray(command);
 	Parsed parsed;
@@ -78,7 +82,7 @@ Parsed parse(const SettledScene& scene, int frame, const fs::path& povray) {
 	return parsed;
 }
 
-double frame_time(const SettledScene& scene, int frame, const fs::path& povray, double parse_seconds, double patience) {
+double frame_time(const SettledScene& scene, int frame, const Trier& trier, double parse_seconds, double patience) {
 	const ScratchFolder scratch(fs::temp_directory_path());
 	SettledScene small = scene;
 	constexpr int smaller = 8;
@@ -86,7 +90,7 @@ double frame_time(const SettledScene& scene, int frame, const fs::path& povray, 
 	small.spec.height = std::max(1, scene.spec.height / smaller);
 	const double pixels = double(scene.spec.width) * scene.spec.height / (double(small.spec.width) * small.spec.height);
 	const auto start = Clock::now();
-	Process process(scene_command(small, povray_ini(small.spec, frame), povray, scratch.path()));
+	Process process(scene_command(small, povray_ini(small.spec, frame), trier, scratch.path()));
 	if (!process.over(parse_seconds + patience))
 		process.signal(SIGKILL);
 	process.over(-1);

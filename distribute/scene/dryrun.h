@@ -3,6 +3,7 @@
 #ifndef FARM_DRYRUN_H
 #define FARM_DRYRUN_H
 
+#include "distribute/sandbox/sandbox.h"
 #include "distribute/scene/settle.h"
 
 #include <set>
@@ -15,14 +16,21 @@ struct Parsed {
 	double seconds = 0;
 };
 
+/// The povray that tries scenes out, and its fence. A scene on its owner's machine reads what its owner may read, as with povray
+/// by hand: what it names goes along to the farm, and one that would be missed there is to be named here. It changes nothing:
+/// what it writes goes to a folder that is removed.
+struct Trier {
+	std::filesystem::path povray;
+	Sandbox sandbox;
+};
+
 /// Parses one frame and renders one pixel of it without its textures' cost. Throws Error with POV-Ray's own words if it does not
 /// parse.
-Parsed parse(const SettledScene& scene, int frame, const std::filesystem::path& povray);
+Parsed parse(const SettledScene& scene, int frame, const Trier& trier);
 
 /// What one core needs for a frame, without parsing: from a picture of an eighth of the width and height, which is given up after
 /// `patience` seconds (it then needs at least what comes of those). Seconds.
-double frame_time(
-	const SettledScene& scene, int frame, const std::filesystem::path& povray, double parse_seconds, double patience);
+double frame_time(const SettledScene& scene, int frame, const Trier& trier, double parse_seconds, double patience);
 
 } // namespace farm
 #endif

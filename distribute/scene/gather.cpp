@@ -4,7 +4,6 @@
 #include "distribute/common/error.h"
 #include "distribute/common/files.h"
 #include "distribute/common/hash.h"
-#include "distribute/scene/dryrun.h"
 
 #include <nlohmann/json.hpp>
 
@@ -16,21 +15,23 @@
 namespace farm {
 namespace {
 
-/// The names by which the scene may have asked for a file: those that POV-Ray's search (its own folder, then the libraries) leads
-/// from to it.
+/// The names by which the scene may have asked for a file: POV-Ray puts what it was asked for behind the folder in which it found
+/// it.
 std::set<std::string> asked_names(const std::string& found, const SettledScene& scene) {
-	if (fs::path(found).is_relative())
-		return {fs::path(found).lexically_normal().string()};
+	std::vector<fs::path> folders = {scene.scene.parent_path()};
+	folders.insert(folders.end(), scene.libraries.begin(), scene.libraries.end());
 	std::set<std::string> names;
-	for (const auto& library : scene.libraries) {
-		const fs::path name = fs::path(found).lexically_normal().lexically_relative(library);
-		if (name.empty() || *name.begin() == "..")
+	for (const auto& folder : folders) {
+		const std::string front = (folder / "").string();
+		if (found.rfind(front, 0) != 0)
 			continue;
-		fs::path first = scene.scene.parent_path() / name;
-		for (auto l = scene.libraries.begin(); l != scene.libraries.end() && !fs::exists(first); ++l)
-			first = *l / name;
-		if (fs::equivalent(first, found))
-			names.insert(name.string());
+		const fs::path name = fs::path(found.substr(front.size())).lexically_normal();
+		for (const auto& first : folders)
+			if (fs::exists(first / name)) {
+				if (fs::equivalent(first / name, found))
+					names.insert(name.string());
+				break;
+			}
 	}
 	if (names.empty())
 		throw Error(
@@ -83,7 +84,7 @@ std::vector<std::string> matches(const std::string& pattern, const fs::path& fol
 
 } // namespace
 
-Gathered gather(SettledScene& scene, const fs::path& povray, const std::vector<std::string>& assets) {
+Gathered gather(SettledScene& scene, const Trier& trier, const std::vector<std::string>& assets) {
 	const fs::path folder = scene.scene.parent_path();
 	scene.spec.options.push_back(ini_line({"Input_File_Name", scene.scene.filename().string()}));
 	Gathered result;
@@ -91,23 +92,21 @@ Gathered gather(SettledScene& scene, const fs::path& povray, const std::vector<s
 	std::set<std::string> reads;
 	const int count = spec.animation ? (spec.last - spec.first) / spec.step + 1 : 1;
 	for (const int index : std::set<int>{0, count / 2, count - 1}) {
-		Parsed parsed = parse(scene, spec.frame(index), povray);
+		Parsed parsed = parse(scene, spec.frame(index), trier);
 		reads.merge(parsed.reads);
 		result.parse_seconds = std::max(result.parse_seconds, parsed.seconds);
 		if (spec.whole_because.empty() && parsed.said.find("An isosurface has 'evaluate'") != std::string::npos)
 			spec.whole_because = "an isosurface has 'evaluate', which learns from pixel to pixel";
 	}
-	reads.insert(scene.scene.filename().string());
+	reads.insert(scene.scene.string());
 
 	std::map<std::string, fs::path> files; // by the name asked for
 	size_t above = 0;
 	for (const auto& name : reads)
-		if (!of_the_system(name)) {
-			const fs::path path = fs::path(name).is_relative() ? folder / name : fs::path(name);
-			if (fs::is_regular_file(path))
-				for (const auto& asked : asked_names(name, scene))
-					files.emplace(asked, path.lexically_normal());
-		}
+		// What has no folder the scene has just written itself.
+		if (fs::path(name).is_absolute() && !of_the_system(name) && fs::is_regular_file(name))
+			for (const auto& asked : asked_names(name, scene))
+				files.emplace(asked, fs::path(name).lexically_normal());
 	for (const auto& pattern : assets)
 		for (const auto& name : matches(pattern, folder))
 			files.emplace(name, folder / name);
@@ -130,7 +129,7 @@ Gathered gather(SettledScene& scene, const fs::path& povray, const std::vector<s
 		result.bundle.files.begin(), result.bundle.files.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
 	spec.bundle = result.bundle.id();
 	if (spec.whole_because.empty())
-		result.frame_seconds = frame_time(scene, spec.frame(count / 2), povray, result.parse_seconds, 10);
+		result.frame_seconds = frame_time(scene, spec.frame(count / 2), trier, result.parse_seconds, 10);
 	// The same checks as the server's, before anything is sent.
 	json(result.bundle).get<Bundle>();
 	return result;

@@ -3,7 +3,7 @@
 #ifndef FARM_GATHER_H
 #define FARM_GATHER_H
 
-#include "distribute/scene/settle.h"
+#include "distribute/scene/dryrun.h"
 
 #include <map>
 
@@ -16,11 +16,11 @@ struct Gathered {
 	double frame_seconds = 0; ///< what one core may need for a frame: the middle one's, from a small picture of it
 };
 
-/// Parses the first, the middle and the last frame with `povray`, without rendering, and collects each file that was read;
+/// Parses the first, the middle and the last frame, without rendering, and collects each file that was read;
 /// `assets` are patterns, relative to the scene's folder, of files that other frames read. Fills in what of the job hangs on it:
 /// Input_File_Name, and why frames are not cut. Throws Error with POV-Ray's own words if the scene does not parse, or if it reads
 /// files by absolute names.
-Gathered gather(SettledScene& scene, const std::filesystem::path& povray, const std::vector<std::string>& assets);
+Gathered gather(SettledScene& scene, const Trier& trier, const std::vector<std::string>& assets);
 
 } // namespace farm
 #endif

@@ -15,7 +15,7 @@ namespace {
 
 using namespace farm;
 
-const std::vector<Option> options = {
+const std::vector<Option> own_options = {
 	{"--server", "URL", "also from BHFARM_SERVER; default http://127.0.0.1:7700", ""},
 	{"--token-file", "FILE", "the token in it opens; also from BHFARM_TOKEN_FILE", ""},
 	{"--ca", "FILE", "the certificate authority to trust, PEM; also from BHFARM_CA", ""},
@@ -27,8 +27,14 @@ const std::vector<Option> options = {
 	{"--when-idle", "", "take nothing while others use more than half of the cores", ""},
 	{"--cache", "DIR", "where scenes are kept; default $XDG_CACHE_HOME/bhfarm", ""},
 	{"--povray", "FILE", "the povray to run; default the one beside this program", ""},
-	{"--help", "", "this", ""},
 };
+
+std::vector<Option> all_options() {
+	std::vector<Option> all = own_options;
+	all.insert(all.end(), limit_options.begin(), limit_options.end());
+	all.push_back({"--help", "", "this", ""});
+	return all;
+}
 
 std::string host_name() {
 	char name[256] = "";
@@ -44,11 +50,14 @@ int work(const Arguments& arguments) {
 	settings.slots = arguments.has("--slots") ? static_cast<int>(arguments.number("--slots", 1, 1024)) : cores;
 	settings.idle_exit = static_cast<double>(arguments.number("--idle-exit", 0, 1000000));
 	settings.grace = static_cast<double>(arguments.number("--grace", 0, 1000000));
-	settings.nice = static_cast<int>(arguments.number("--nice", 0, 19));
+	settings.renderer.nice = static_cast<int>(arguments.number("--nice", 0, 19));
 	settings.when_idle = arguments.has("--when-idle");
 	settings.cache = arguments.get("--cache").empty() ? cache_folder() : fs::path(arguments.get("--cache"));
 	settings.scratch = fs::temp_directory_path();
-	settings.povray = find_povray(arguments.get("--povray"));
+	settings.renderer.povray = find_povray(arguments.get("--povray"));
+	settings.renderer.limits = limits_from(arguments, settings.slots);
+	if (!arguments.has("--no-sandbox"))
+		settings.renderer.sandbox = Sandbox(settings.renderer.povray);
 
 	// Signals come to one thread, which tells the others.
 	sigset_t signals;
@@ -71,6 +80,7 @@ int work(const Arguments& arguments) {
 int main(int argc, char** argv) {
 	name_program("bhfarm-worker", true);
 	try {
+		const std::vector<Option> options = all_options();
 		const Arguments arguments({argv + 1, argv + argc}, options);
 		if (arguments.has("--help")) {
 			std::printf("bhfarm-worker [options]\nRenders strips for a bhfarm-server. SIGTERM: finishes them, SIGINT: gives them "

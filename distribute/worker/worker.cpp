@@ -10,7 +10,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <csignal>
 #include <cstdlib>
 #include <thread>
 
@@ -38,8 +37,8 @@ Worker::Worker(const WorkerSettings& s) : settings(s), cache(s.cache) {
 	self.id = random_hex(16);
 	self.name = settings.name;
 	self.slots = settings.slots;
-	self.povray = povray_version(settings.povray);
-	self.probe = probe(settings.povray);
+	self.povray = povray_version(settings.renderer.povray, settings.renderer.sandbox);
+	self.probe = probe(settings.renderer.povray, settings.renderer.sandbox);
 	std::srand(static_cast<unsigned>(std::stoul(self.id.substr(0, 7), nullptr, 16)));
 }
 
@@ -243,41 +242,25 @@ void Worker::work_on(Client& client, const Task& task) {
 		});
 		if (folder.empty())
 			throw Error("the scene's files could not be fetched");
-		// povray adds the frame's number to the name, so a folder of its own tells what it wrote.
-		const fs::path out = scratch.path() / "out", strip = scratch.path() / ("strip" + task.spec.suffix());
-		fs::create_directory(out);
-		const fs::path ini = scratch.path() / "strip.ini", log = scratch.path() / "log";
-		write_durably(ini, strip_ini(task, out / ("whole" + task.spec.suffix())));
-		Command command = povray_command(settings.povray, ini, scratch.path());
-		command.folder = folder;
-		command.log = log;
-		command.nice = settings.nice;
-		const auto start = Clock::now();
-		Process process(command);
-		while (!process.over(0.1)) {
-			if (lost(task.lease))
-				return; // somebody else has done it
-			if (stopping && give_up_now()) {
-				client.post(path + "/return", json::object());
-				return;
-			}
+		const fs::path strip = scratch.path() / ("strip" + task.spec.suffix()), inside = scratch.path() / "render";
+		fs::create_directory(inside);
+		const Rendered done = render_strip(
+			settings.renderer, task, root, folder, inside, [&] { return lost(task.lease) || (stopping && give_up_now()); });
+		if (done.given_up && lost(task.lease))
+			return; // somebody else has done it
+		if (done.given_up) {
+			client.post(path + "/return", json::object());
+			return;
 		}
-		const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
-		const std::string output = fs::exists(log) ? read_file(log) : "";
-		if (process.code() != 0 && did_not_start(output)) { // nobody's fault
+		if (done.not_started) {
 			pause(1);
 			insist(task.lease, [&] { return client.post(path + "/return", json::object()); });
 			return;
 		}
-		fs::path whole;
-		for (const auto& entry : fs::directory_iterator(out))
-			if (entry.path().extension() == task.spec.suffix())
-				whole = entry.path();
-		if (process.code() != 0 || whole.empty()) {
-			failure = {tail(error_line(output, process.code()), 1900), tail(output, static_cast<size_t>(limits::log_bytes) / 2)};
-		} else {
-			cut(task.spec.format, whole, task.row, task.rows, strip);
-			const std::string to = path + "/strip?sha256=" + sha256_file(strip) + "&seconds=" + std::to_string(seconds);
+		failure = done.failure;
+		if (!done.picture.empty()) {
+			cut(task.spec.format, done.picture, task.row, task.rows, strip);
+			const std::string to = path + "/strip?sha256=" + sha256_file(strip) + "&seconds=" + std::to_string(done.seconds);
 			insist(task.lease, [&] { return client.put_file(to, strip); });
 			return;
 		}

@@ -6,6 +6,7 @@
 #include "distribute/http/client.h"
 #include "distribute/protocol/messages.h"
 #include "distribute/worker/cache.h"
+#include "distribute/worker/strip.h"
 
 #include <atomic>
 #include <chrono>
@@ -18,13 +19,13 @@ namespace farm {
 
 struct WorkerSettings {
 	Access_to server;
-	std::string name;     ///< for people
-	int slots = 1;        ///< strips at a time
-	double idle_exit = 0; ///< seconds without work after which it leaves; 0: stays
-	double grace = 20;    ///< seconds that a strip may still take after SIGTERM
-	int nice = 19;
+	std::string name;       ///< for people
+	int slots = 1;          ///< strips at a time
+	double idle_exit = 0;   ///< seconds without work after which it leaves; 0: stays
+	double grace = 20;      ///< seconds that a strip may still take after SIGTERM
 	bool when_idle = false; ///< takes nothing while others use more than half of the cores
-	fs::path povray, cache, scratch;
+	fs::path cache, scratch;
+	Renderer renderer;
 };
 
 class Worker {

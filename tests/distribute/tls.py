@@ -49,13 +49,14 @@ bhfarm("watch", str(number), server=server)
 bhfarm("fetch", str(number), "--to", WORK + "/out", server=server)
 for frame in ("film1.png", "film2.png"):
     same(WORK + "/out/" + frame, WORK + "/reference/" + frame)
-# Another povray: one that says another version, and one that makes other pixels.
+# Another povray: one that says another version, and one that makes other pixels. Scripts need more than a fence lets them see.
 for name, what in (("version", 'if [ "$1" = --version ]; then echo "POV-Ray 3.6"; exit; fi'), ("pixels", 'sed -i "s/Quality=.*//; s/^Width/Quality=1\\nWidth/" "$POVINI" 2>/dev/null')):
     with open(WORK + "/" + name, "w") as f:
         f.write('#!/bin/bash\n%s\nexec %s/povray "$@"\n' % (what, BIN))
     os.chmod(WORK + "/" + name, 0o755)
-refused(["bhfarm-worker", "--server", server.url, "--povray", WORK + "/version"], "its povray is 'POV-Ray 3.6'")
-refused(["bhfarm-worker", "--server", server.url, "--povray", WORK + "/pixels"], "makes other pixels")
+refused(["bhfarm-worker", "--server", server.url, "--no-sandbox", "--povray", WORK + "/version"], "its povray is 'POV-Ray 3.6'")
+refused(["bhfarm-worker", "--server", server.url, "--no-sandbox", "--povray", WORK + "/pixels"], "makes other pixels")
+refused(["bhfarm-worker", "--server", server.url, "--povray", WORK + "/version"], "cannot be fenced; give povray itself, or say --no-sandbox")
 assert bhfarm("workers", server=server).stdout.count("good") == 1
 bhfarm("drain", "good", server=server)
 assert worker.wait(60) == 0
