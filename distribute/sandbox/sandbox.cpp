@@ -40,7 +40,7 @@ bool within(const fs::path& path, const fs::path& folder) {
 std::set<fs::path> libraries_of(const fs::path& program) {
 	Command ldd;
 	ldd.words = {"ldd", program.string()};
-	ldd.environment["LC_ALL"] = "C";
+	ldd.environment = {{"LC_ALL", "C"}};
 	int code = 0;
 	std::istringstream lines(output_of(ldd, code));
 	std::set<fs::path> found;
@@ -87,7 +87,7 @@ Sandbox::Sandbox(const fs::path& program) : bubblewrap(find_bubblewrap()) {
 	});
 	Command trial;
 	trial.words = {program.string(), "--version"};
-	trial.environment["HOME"] = "/";
+	trial.environment = {{"HOME", "/"}};
 	int code = 0;
 	const std::string said = output_of(fenced(trial, {}), code);
 	if (code != 0 && (said.empty() || said.find("bwrap: ") != std::string::npos))
