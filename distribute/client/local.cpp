@@ -26,14 +26,16 @@ std::string key_of(const Prepared& p, const fs::path& folder) {
 	return sha256(json(p.scene.spec).dump() + "\n" + folder.string()).substr(0, 24);
 }
 
-/// Ends a process in order; killed if it will not.
-void end(std::optional<Process>& process, int signal) {
-	if (!process)
-		return;
-	process->signal(signal);
-	if (!process->over(10))
+/// Waits for the end of a process that was told to; killed if it will not.
+void end(std::optional<Process>& process) {
+	if (process && !process->over(10))
 		process->signal(SIGKILL);
 	process.reset();
+}
+
+void tell(std::optional<Process>& process, int signal) {
+	if (process)
+		process->signal(signal);
 }
 
 /// A server and a worker of one's own, started again should one of them die.
@@ -87,9 +89,14 @@ public:
 		if (no_worker)
 			start_worker();
 	}
-	void stop() {
-		end(worker, SIGINT);
-		end(server, SIGTERM);
+	/// `all_done`: nothing is to be given back, so that the worker need not be waited for before the server goes.
+	void stop(bool all_done) {
+		tell(worker, SIGINT);
+		if (!all_done)
+			end(worker);
+		tell(server, SIGTERM);
+		end(worker);
+		end(server);
 	}
 
 private:
@@ -165,8 +172,8 @@ int render_command(const Words& words) {
 		}
 		job = follow(client, id, 60, interrupted, [&] { farm.mend(); });
 	}
-	farm.stop();
 	const std::string stage = job.is_object() ? job.value("stage", "") : "";
+	farm.stop(stage == "done");
 	if (stage != "done") {
 		const std::string error = job.is_object() ? job.value("error", "") : "";
 		say(stage == "failed" ? error : "stopped; the same command goes on where it was");

@@ -12,6 +12,8 @@ std::string check_strip(const JobSpec& spec, int row, int rows, const std::files
 }
 
 void stitch(const JobSpec& spec, const std::vector<std::filesystem::path>& strips, const std::filesystem::path& picture) {
+	if (strips.size() == 1) // a frame already
+		return std::filesystem::create_hard_link(strips[0], picture);
 	spec.format == Format::png ? png::stitch(spec, strips, picture) : exr::stitch(spec, strips, picture);
 }
 

@@ -5,34 +5,17 @@
 #include "distribute/common/hash.h"
 #include "distribute/render/povray.h"
 #include "distribute/render/probe.h"
-#include "distribute/stitch/picture.h"
+#include "distribute/worker/backoff.h"
+#include "distribute/worker/finished.h"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cstdlib>
+#include <future>
 #include <thread>
 
 namespace farm {
-namespace {
-
-/// Doubles from a tenth of a second to ten, a little different for each so that they do not all come at once.
-class Backoff {
-public:
-	double next() {
-		seconds = std::min(10.0, seconds * 2);
-		return seconds * (0.5 + std::rand() / (RAND_MAX + 1.0));
-	}
-	void reset() { seconds = 0.05; }
-
-private:
-	double seconds = 0.05;
-};
-
-std::string tail(const std::string& text, size_t most) { return text.size() <= most ? text : text.substr(text.size() - most); }
-
-} // namespace
-
 Worker::Worker(const WorkerSettings& s) : settings(s), cache(s.cache) {
 	self.id = random_hex(16);
 	self.name = settings.name;
@@ -163,8 +146,9 @@ void Worker::keep_touch() {
 void Worker::serve_slot() {
 	Client client(settings.server);
 	client.stop_when(&stopping);
-	Client sending(settings.server); // goes on while stopping
+	Client sending(settings.server), delivering(settings.server); // go on while stopping
 	Backoff backoff;
+	std::future<void> delivery; // of the strip before: it is cut and sent while the next is rendered
 	while (!stopping) {
 		if (settings.when_idle && others_work()) {
 			pause(5);
@@ -187,12 +171,17 @@ void Worker::serve_slot() {
 				held.insert(task.lease);
 				++busy;
 			}
-			work_on(sending, task);
-			const std::lock_guard lock(mutex);
-			held.erase(task.lease);
-			dropped.erase(task.lease);
-			--busy;
-			last_work = Clock::now();
+			const auto finished = work_on(sending, task);
+			if (delivery.valid())
+				delivery.get();
+			if (!finished) {
+				let_go(task.lease);
+				continue;
+			}
+			delivery = std::async(std::launch::async, [this, &delivering, finished] {
+				deliver(delivering, *finished);
+				let_go(finished->task.lease);
+			});
 		} catch (const Refused& e) {
 			if (e.status == 404) {
 				try {
@@ -208,69 +197,6 @@ void Worker::serve_slot() {
 			pause(backoff.next());
 		}
 	}
-}
-
-void Worker::insist(std::int64_t lease, const std::function<json()>& ask) {
-	Backoff backoff;
-	for (int refused = 0; !lost(lease);) {
-		try {
-			ask();
-			return;
-		} catch (const Refused& e) {
-			say("lease " + std::to_string(lease) + ": " + e.what());
-			// What the server cannot do now it may do later; what it will not do once more is not worth a third time.
-			if (e.status < 500 && e.status != 401 && ++refused > 5)
-				return;
-		} catch (const Unreachable&) {
-		}
-		// Stopping too waits for an answer, within its grace.
-		if (give_up_now())
-			return;
-		std::this_thread::sleep_for(std::chrono::duration<double>(backoff.next()));
-	}
-}
-
-void Worker::work_on(Client& client, const Task& task) {
-	const std::string path = "/v1/leases/" + std::to_string(task.lease);
-	Failure failure;
-	try {
-		const ScratchFolder scratch(settings.scratch);
-		fs::path root, folder;
-		insist(task.lease, [&] {
-			folder = cache.bundle(client, task.spec.bundle, root);
-			return json();
-		});
-		if (folder.empty())
-			throw Error("the scene's files could not be fetched");
-		const fs::path strip = scratch.path() / ("strip" + task.spec.suffix()), inside = scratch.path() / "render";
-		fs::create_directory(inside);
-		const Rendered done = render_strip(
-			settings.renderer, task, root, folder, inside, [&] { return lost(task.lease) || (stopping && give_up_now()); });
-		if (done.given_up && lost(task.lease))
-			return; // somebody else has done it
-		if (done.given_up) {
-			client.post(path + "/return", json::object());
-			return;
-		}
-		if (done.not_started) {
-			pause(1);
-			insist(task.lease, [&] { return client.post(path + "/return", json::object()); });
-			return;
-		}
-		failure = done.failure;
-		if (!done.picture.empty()) {
-			cut(task.spec.format, done.picture, task.row, task.rows, strip);
-			const std::string to = path + "/strip?sha256=" + sha256_file(strip) + "&seconds=" + std::to_string(done.seconds);
-			insist(task.lease, [&] { return client.put_file(to, strip); });
-			return;
-		}
-	} catch (const Error& e) {
-		failure.line = tail(e.what(), 1900);
-	} catch (const std::exception& e) {
-		failure.line = tail(e.what(), 1900);
-	}
-	say("job " + std::to_string(task.job) + ", frame " + std::to_string(task.frame) + ": " + failure.line);
-	insist(task.lease, [&] { return client.post(path + "/failure", failure); });
 }
 
 } // namespace farm

@@ -12,6 +12,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <set>
 
@@ -42,7 +43,13 @@ private:
 	void serve_slot();
 	void keep_touch();
 	void hello(Client& client);
-	void work_on(Client& client, const Task& task);
+	/// A strip that is rendered and still has to be cut and sent.
+	struct Finished;
+	/// Null if there is nothing to send: it failed, was given back, or is not wanted any more.
+	std::shared_ptr<Finished> work_on(Client& client, const Task& task);
+	void deliver(Client& client, const Finished& finished);
+	void fail(Client& client, const Task& task, Failure failure);
+	void let_go(std::int64_t lease);
 	/// Asks until there is an answer, or the lease or all hope is lost.
 	void insist(std::int64_t lease, const std::function<json()>& ask);
 	bool lost(std::int64_t lease);
