@@ -24,6 +24,8 @@ struct Connection {
 
 namespace {
 
+constexpr size_t most_read = 1 << 16; ///< bytes at a time
+
 auto patience(double seconds) { return std::chrono::milliseconds(static_cast<std::int64_t>(1000 * seconds)); }
 
 /// Looks out for the end of a connection while nothing is read from it.
@@ -198,6 +200,9 @@ template <class Stream> Awaitable<bool> HttpServer::exchange(Stream& stream, Con
 			co_await http::async_write(stream, go_on, asio::redirect_error(asio::use_awaitable, error));
 		}
 		lowest.expires_after(patience(settings.body_seconds));
+		// Beast reads as much at a time as there is room for. Those that wait keep none.
+		if (route.body_limit > 0)
+			connection.buffer.reserve(std::min<size_t>(header.content_length().value_or(most_read), most_read));
 		if (route.body == Body::file) {
 			request.file = settings.fresh_file();
 			http::request_parser<http::file_body> body(std::move(header));
@@ -225,6 +230,7 @@ template <class Stream> Awaitable<bool> HttpServer::exchange(Stream& stream, Con
 			co_return false;
 		}
 		body_read = true;
+		connection.buffer.shrink_to_fit();
 		lowest.expires_never();
 		if (route.body == Body::long_poll) {
 			request.peer = std::make_shared<Peer>();

@@ -102,10 +102,13 @@ void Farm::restore() {
 	}
 }
 
-Awaitable<void> Farm::commit(Ledger::Work work) {
+namespace {
+
+/// Waits until what `start` begins has told its end; throws HttpError 507 if that was a bad one.
+template <class Start> Awaitable<void> written(boost::asio::io_context& context, const Start& start) {
 	auto error = std::make_shared<std::string>();
 	auto bell = std::make_shared<Bell>(context);
-	ledger.post(std::move(work), [error, bell](const std::string& what) {
+	start([error, bell](const std::string& what) {
 		*error = what;
 		bell->ring();
 	});
@@ -114,6 +117,18 @@ Awaitable<void> Farm::commit(Ledger::Work work) {
 		say(*error);
 		throw HttpError(507, *error);
 	}
+}
+
+} // namespace
+
+Awaitable<void> Farm::commit(Ledger::Work work) {
+	const auto start = [this, &work](Ledger::Done done) { ledger.post(std::move(work), std::move(done)); };
+	co_await written(context, start);
+}
+
+Awaitable<void> Farm::move(fs::path from, fs::path to) {
+	const auto start = [this, &from, &to](Mover::Done done) { mover.move(from, to, std::move(done)); };
+	co_await written(context, start);
 }
 
 void Farm::note(Ledger::Work work) {

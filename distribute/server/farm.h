@@ -12,6 +12,7 @@
 #include "distribute/server/events.h"
 #include "distribute/server/later.h"
 #include "distribute/store/ledger.h"
+#include "distribute/store/mover.h"
 #include "distribute/store/spool.h"
 
 #include <deque>
@@ -86,6 +87,8 @@ private:
 	void restore();
 	/// Waits until it is on the disk; throws HttpError 507 if it cannot be.
 	Awaitable<void> commit(Ledger::Work work);
+	/// Likewise for a file that is written and has to get to its place.
+	Awaitable<void> move(fs::path from, fs::path to);
 	/// Does not wait: for what may be lost.
 	void note(Ledger::Work work);
 	void apply(const Changes& changes);
@@ -110,6 +113,7 @@ private:
 	Scheduler scheduler;
 	Events events;
 	boost::asio::thread_pool pool;
+	Mover mover;
 	std::map<JobId, Job> all_jobs;
 	std::map<WorkerId, Guest> all_guests;
 	std::deque<std::shared_ptr<Bell>> sleepers;  // long polls, the longest waiting first

@@ -124,7 +124,6 @@ Awaitable<std::string> Farm::report(LeaseId id, fs::path file, std::string sha25
 			c.damage = e.what();
 			return c;
 		}
-		move_durably(file, spool.strip(lease.job, lease.strip, c.pixels, spec.suffix()));
 		return c;
 	};
 	const Checked checked = co_await in_pool(context, pool, std::move(check));
@@ -135,6 +134,7 @@ Awaitable<std::string> Farm::report(LeaseId id, fs::path file, std::string sha25
 		failure.line = "the worker sent no good picture: " + checked.damage;
 		co_return co_await failed(id, std::move(failure));
 	}
+	co_await move(file, spool.strip(lease.job, lease.strip, checked.pixels, spec.suffix()));
 	const ReportRow report{lease.job, lease.strip, lease.worker, checked.pixels, seconds, false};
 	Ledger::Work work = [=](Database& db) {
 		rows::add_report(db, report);
