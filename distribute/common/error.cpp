@@ -27,7 +27,11 @@ void say(const std::string& line) {
 		localtime_r(&now, &local);
 		std::strftime(stamp, sizeof stamp, "%H:%M:%S ", &local);
 	}
-	std::fprintf(stderr, "%s%s: %s\n", stamp, program.c_str(), line.c_str());
+	// What names a file may have anything in it.
+	std::string plain = line;
+	for (char& c : plain)
+		c = static_cast<unsigned char>(c) < ' ' || c == 127 ? ' ' : c;
+	std::fprintf(stderr, "%s%s: %s\n", stamp, program.c_str(), plain.c_str());
 }
 
 } // namespace farm

@@ -215,6 +215,8 @@ std::vector<Setting> read_word(const std::string& word) {
 
 std::string ini_line(const Setting& setting) {
 	const auto& [key, value] = setting;
+	if (std::any_of(value.begin(), value.end(), [](char c) { return c != '\t' && static_cast<unsigned char>(c) < ' '; }))
+		throw Error(key + " has a control character in its value");
 	if (!value.empty() && value.find_first_of(" \t,;#\"'") == std::string::npos)
 		return key + "=" + value;
 	const char quote = value.find('"') == std::string::npos ? '"' : '\'';

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "distribute/common/error.h"
 #include "distribute/common/hash.h"
+#include "distribute/protocol/fields.h"
 #include "distribute/stitch/picture.h"
 
 #include <ImfChannelList.h>
@@ -8,6 +9,10 @@
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
+
+#include <array>
+#include <fstream>
+#include <map>
 
 namespace farm::exr {
 namespace {
@@ -54,6 +59,8 @@ Pixels read(Imf::InputFile& file, int row, int rows) {
 	const auto& list = file.header().channels();
 	for (auto c = list.begin(); c != list.end(); ++c)
 		p.channels.emplace_back(c.name(), c.channel().type);
+	if (p.channels.size() > 4)
+		throw Error(std::string(file.fileName()) + " has more channels than povray writes");
 	p.data.resize(p.channels.size());
 	file.setFrameBuffer(p.buffer(window.min.x));
 	file.readPixels(row, row + rows - 1);
@@ -70,6 +77,68 @@ void write(const Path& path, Imf::Header header, Pixels& p, int left) {
 	out.writePixels(p.rows);
 }
 
+/// A picture from a stranger (or from his scene), before OpenEXR believes what it says: it would make room for whatever size an
+/// attribute or a window claims to have.
+class Header {
+public:
+	explicit Header(const Path& path) {
+		std::ifstream file(path, std::ios::binary);
+		text.resize(1 << 16); // povray's have 400 bytes
+		file.read(text.data(), static_cast<std::streamsize>(text.size()));
+		text.resize(static_cast<size_t>(file.gcount()));
+		// The magic number, version 2, and no flag: scan lines, one part, short names.
+		if (text.compare(0, 8, std::string("v/1\1\2\0\0\0", 8)) != 0)
+			throw Error("it is no EXR of povray's kind");
+		at = 8;
+		for (std::string name = word(); !name.empty(); name = word()) {
+			const std::string type = word();
+			const std::int32_t size = number();
+			if (size < 0 || static_cast<size_t>(size) > text.size() - at)
+				throw Error("its header is damaged");
+			const size_t next = at + static_cast<size_t>(size);
+			// OpenEXR reads what the type needs, whatever the size says.
+			static const std::map<std::string, std::int32_t> sizes = {
+				{"compression", 1}, {"lineOrder", 1}, {"float", 4}, {"v2f", 8}, {"box2i", 16}, {"chromaticities", 32}};
+			if (type == "chlist")
+				while (!word().empty())
+					at += 16;
+			else if (const auto known = sizes.find(type); type != "string" && (known == sizes.end() || known->second != size))
+				throw Error("its header is none of povray's");
+			if (type == "box2i")
+				for (auto& edge : windows[name])
+					if (edge = number(); edge < 0 || edge >= limits::pixels)
+						throw Error("its header is damaged");
+			if (at > next || (type == "chlist" && at != next))
+				throw Error("its header is damaged");
+			at = next;
+		}
+	}
+	/// left, top, right, bottom of dataWindow or displayWindow.
+	const std::array<std::int32_t, 4>& window(const std::string& name) { return windows[name]; }
+
+private:
+	std::string word() {
+		const size_t end = text.find('\0', at);
+		if (end == std::string::npos)
+			throw Error("its header is damaged");
+		const std::string w = text.substr(at, end - at);
+		at = end + 1;
+		return w;
+	}
+	std::int32_t number() {
+		std::uint32_t n = 0;
+		if (text.size() - at < 4)
+			throw Error("its header is damaged");
+		for (int i = 0; i < 4; ++i)
+			n |= static_cast<std::uint32_t>(static_cast<unsigned char>(text[at++])) << (8 * i);
+		return static_cast<std::int32_t>(n);
+	}
+
+	std::string text;
+	size_t at = 0;
+	std::map<std::string, std::array<std::int32_t, 4>> windows;
+};
+
 /// OpenEXR's own exceptions, as ours.
 template <class Function> auto guarded(const Path& path, Function function) {
 	try {
@@ -77,7 +146,7 @@ template <class Function> auto guarded(const Path& path, Function function) {
 	} catch (const Error&) {
 		throw;
 	} catch (const std::exception& e) {
-		throw Error(path.string() + ": " + e.what());
+		throw Error(path.string() + ": " + shown(e.what()));
 	}
 }
 
@@ -85,6 +154,7 @@ template <class Function> auto guarded(const Path& path, Function function) {
 
 void cut(const Path& whole, int row, int rows, const Path& strip) {
 	guarded(whole, [&] {
+		const Header believable(whole);
 		Imf::InputFile in(whole.c_str(), 0);
 		Pixels p = read(in, row, rows);
 		write(strip, in.header(), p, in.header().dataWindow().min.x);
@@ -93,11 +163,12 @@ void cut(const Path& whole, int row, int rows, const Path& strip) {
 
 std::string check_strip(const JobSpec& spec, int row, int rows, const Path& strip) {
 	return guarded(strip, [&] {
-		Imf::InputFile in(strip.c_str(), 0);
-		const auto window = in.header().dataWindow(), frame = in.header().displayWindow();
-		if (window.max.x - window.min.x + 1 != spec.width || window.min.y != row || window.max.y != row + rows - 1 ||
-			frame.max.y - frame.min.y + 1 != spec.height)
+		Header header(strip);
+		const std::array<std::int32_t, 4> frame = {0, 0, spec.width - 1, spec.height - 1},
+										  part = {0, row, spec.width - 1, row + rows - 1};
+		if (header.window("displayWindow") != frame || header.window("dataWindow") != part)
 			throw Error("the strip has other rows or another width than it should");
+		Imf::InputFile in(strip.c_str(), 0);
 		Pixels p = read(in, row, rows);
 		std::string all = "exr " + p.kind() + "\n";
 		for (const auto& [name, type] : p.channels)
