@@ -79,7 +79,8 @@ Process::Process(const Command& command) {
 			rlimit limit{};
 			if (::getrlimit(static_cast<__rlimit_resource>(what), &limit) == 0) {
 				limit.rlim_cur = std::min<rlim_t>(most, limit.rlim_max);
-				limit.rlim_max = limit.rlim_cur;
+				// At the hard limit the kernel's signal is SIGKILL, which does not say why.
+				limit.rlim_max = std::min<rlim_t>(most + (what == RLIMIT_CPU ? 5 : 0), limit.rlim_max);
 				::setrlimit(static_cast<__rlimit_resource>(what), &limit);
 			}
 		}

@@ -6,6 +6,7 @@
 #include "distribute/protocol/messages.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 namespace farm {
@@ -112,6 +113,21 @@ bool is_inner_path(const std::string& path) {
 			return true;
 		from = slash + 1;
 	}
+}
+
+bool is_ini_setting(const std::string& line) {
+	const size_t equals = line.find('=');
+	if (equals == std::string::npos || equals == 0 || equals + 1 == line.size())
+		return false;
+	const auto is_letter = [](unsigned char c) { return std::isalnum(c) || c == '_'; };
+	if (!std::all_of(line.begin(), line.begin() + static_cast<std::ptrdiff_t>(equals), is_letter))
+		return false;
+	if (std::any_of(line.begin(), line.end(), [](unsigned char c) { return (c < 32 && c != '\t') || c == 127; }))
+		return false;
+	const std::string value = line.substr(equals + 1);
+	if (const char quote = value[0]; quote == '"' || quote == '\'')
+		return value.find(quote, 1) == value.size() - 1;
+	return value.find_first_of(" \t,;#\"'") == std::string::npos;
 }
 
 json parse_object(const std::string& text) {

@@ -5,7 +5,7 @@
 #include "distribute/common/hash.h"
 #include "distribute/protocol/fields.h"
 
-#include <algorithm>
+#include <set>
 
 namespace farm {
 
@@ -29,8 +29,8 @@ void JobSpec::check() const {
 	if (!is_sha256(bundle))
 		throw Error("bundle is '" + shown(bundle) + "'; it must be 64 hexadecimal digits");
 	for (const auto& line : options)
-		if (line.find_first_of("\n\r") != std::string::npos || line.find('=') == std::string::npos || line.size() > 4096)
-			throw Error("options has '" + shown(line) + "'; each must be one line KEY=VALUE");
+		if (line.size() > 4096 || !is_ini_setting(line))
+			throw Error("options has '" + shown(line) + "'; each must be one line KEY=VALUE, the value quoted if it has blanks");
 	in("width", width, 1, limits::pixels);
 	in("height", height, 1, limits::pixels);
 	in("first", first, 0, 1 << 30);
@@ -76,13 +76,19 @@ void from_json(const json& j, Bundle& v) {
 	if (bytes > limits::bundle_bytes)
 		throw Error(
 			"the bundle has " + std::to_string(bytes) + " bytes; " + std::to_string(limits::bundle_bytes) + " are allowed");
-	std::vector<std::string> names;
-	for (const auto& file : v.files)
-		names.push_back(file.name);
-	std::sort(names.begin(), names.end());
-	for (size_t i = 1; i < names.size(); ++i)
-		if (names[i] == names[i - 1] || names[i].rfind(names[i - 1] + "/", 0) == 0)
-			throw Error("the bundle has '" + shown(names[i - 1]) + "' twice");
+	// What is a folder to one file must not be a file itself.
+	std::set<std::string> names, folders = {v.folder};
+	for (const auto& file : v.files) {
+		if (!names.insert(file.name).second)
+			throw Error("the bundle has '" + shown(file.name) + "' twice");
+		for (size_t slash = file.name.find('/'); slash != std::string::npos; slash = file.name.find('/', slash + 1))
+			folders.insert(file.name.substr(0, slash));
+	}
+	for (size_t slash = v.folder.find('/'); slash != std::string::npos; slash = v.folder.find('/', slash + 1))
+		folders.insert(v.folder.substr(0, slash));
+	for (const auto& folder : folders)
+		if (names.count(folder))
+			throw Error("the bundle has '" + shown(folder) + "' as a file and as a folder");
 }
 
 void to_json(json& j, const JobSpec& v) {

@@ -85,14 +85,12 @@ std::string Overseer::complaint() {
 std::string Overseer::complaint(int code, const std::string& log) {
 	if (code == 0)
 		return "";
-	const double took = std::chrono::duration<double>(Clock::now() - start).count();
-	// At its hard limit the kernel may send SIGKILL instead.
-	if (limits.cpu > 0 && (code == 128 + SIGXCPU || (code == 128 + SIGKILL && took >= limits.cpu)))
+	if (limits.cpu > 0 && code == 128 + SIGXCPU)
 		return "the render took more processor time" + after("--cpu-limit", limits.cpu, "s");
 	next_look = {};
 	if (limits.output > 0 && (code == 128 + SIGXFSZ || too_much_written()))
 		return "the render wrote more" + after("--output-limit", double(limits.output) / mega, "MB");
-	for (const char* words : {"bad_alloc", "ut of memory", "annot allocate memory"})
+	for (const char* words : {"bad_alloc", "ut of memory", "annot allocate"})
 		if (limits.memory > 0 && log.find(words) != std::string::npos)
 			return "the render needed more memory" + after("--memory-limit", double(limits.memory) / mega, "MB");
 	return "";

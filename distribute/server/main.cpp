@@ -22,6 +22,7 @@ const std::vector<Option> options = {
 	{"--token-file", "FILE", "tokens that let in, one a line; also from BHFARM_TOKEN_FILE", ""},
 	{"--tls-cert", "FILE", "certificate chain, PEM", ""},
 	{"--tls-key", "FILE", "its key, PEM", ""},
+	{"--idle", "SECONDS", "a connection that asks for nothing in so long is closed", "60"},
 	{"--lease", "SECONDS", "a worker that is silent for so long loses its strips", "20"},
 	{"--check-every", "N", "one strip in N, and each worker's first, is rendered by two; 0: none", "32"},
 	{"--keep-days", "N", "jobs that have ended are removed after so long", "30"},
@@ -52,6 +53,7 @@ int serve(const Arguments& arguments) {
 	settings.keep_days = static_cast<double>(arguments.number("--keep-days", 0, 100000));
 	settings.keep_bytes = 1e9 * static_cast<double>(arguments.number("--keep-gb", 0, 1000000));
 	ServerSettings http;
+	http.header_seconds = static_cast<double>(arguments.number("--idle", 1, 86400));
 	http.tokens = read_tokens(arguments.get("--token-file"));
 	http.tls_certificate = arguments.get("--tls-cert");
 	http.tls_key = arguments.get("--tls-key");

@@ -65,6 +65,18 @@ TEST(Protocol, EachFieldIsChecked) {
 		j[key] = value;
 		EXPECT_NE(fault<JobSpec>(j), "") << key << " = " << value;
 	}
+	for (const char* line : {"A=1", "Declare=A=-1.5", "Library_Path=\"a b\"", "Input_File_Name='x\"y.pov'", "A=x[1]"}) {
+		json j = good();
+		j["options"] = {line};
+		EXPECT_EQ(fault<JobSpec>(j), "") << line;
+	}
+	// What POV-Ray's INI reader would take for more than one setting, or let it swallow those that follow.
+	for (const char* line : {"[a=b]", "+O/etc/x=1", "-A=1", ";=1", "#=1", "=1", "A=", "A B=1", "A=\"open", "A='open",
+			 "A=\"x\" B=2", "A=x y", "A=x,y", "A=1;", "\"A\"=1", "A=\x01", "A=x\r", "/x=1", "a.ini A=1"}) {
+		json j = good();
+		j["options"] = {line};
+		EXPECT_NE(fault<JobSpec>(j), "") << line;
+	}
 	const json all = good();
 	for (const auto& [key, value] : all.items()) {
 		json j = good();
@@ -90,6 +102,11 @@ TEST(Protocol, ABundleStaysInside) {
 	json both = named("a");
 	both["files"].push_back(named("a/b")["files"][0]);
 	EXPECT_NE(fault<Bundle>(both), "") << "a is a file and a folder";
+	both["files"].push_back(named("a-b")["files"][0]);
+	EXPECT_NE(fault<Bundle>(both), "") << "with another between them in the alphabet";
+	json folder = named("a/b");
+	folder["folder"] = "a/b";
+	EXPECT_NE(fault<Bundle>(folder), "") << "povray would run in a file";
 	json bomb = named("a");
 	bomb["files"][0]["bytes"] = 10LL << 30;
 	EXPECT_NE(fault<Bundle>(bomb), "");
