@@ -6,7 +6,6 @@
 #include <cstdlib>
 #include <fcntl.h>
 #include <fstream>
-#include <sstream>
 #include <sys/file.h>
 #include <unistd.h>
 #include <vector>
@@ -71,12 +70,26 @@ void move_durably(const fs::path& from, const fs::path& to) {
 }
 
 std::string read_file(const fs::path& file) {
-	std::ifstream in(file, std::ios::binary);
-	std::ostringstream all;
-	// A folder opens, but cannot be read.
-	if (!in || fs::is_directory(file) || (in.peek() != std::ifstream::traits_type::eof() && !(all << in.rdbuf())))
+	const int d = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+	if (d < 0)
 		throw system_error("cannot read " + file.string());
-	return all.str();
+	// A little more than it seems to have, to see its end; what has no size (/proc) grows as it comes.
+	std::error_code unknown;
+	const auto size = fs::file_size(file, unknown);
+	std::string all(unknown ? 1 << 16 : static_cast<size_t>(size) + 1, 0);
+	size_t have = 0;
+	ssize_t n = 0;
+	while ((n = ::read(d, all.data() + have, all.size() - have)) > 0) {
+		have += static_cast<size_t>(n);
+		if (have == all.size())
+			all.resize(2 * have);
+	}
+	const Error error = system_error("cannot read " + file.string());
+	::close(d);
+	if (n < 0)
+		throw error;
+	all.resize(have);
+	return all;
 }
 
 ScratchFolder::ScratchFolder(const fs::path& parent) {

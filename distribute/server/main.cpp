@@ -9,6 +9,7 @@
 #include <boost/asio/signal_set.hpp>
 
 #include <cstdio>
+#include <malloc.h>
 #include <sstream>
 #include <sys/resource.h>
 
@@ -63,6 +64,9 @@ int serve(const Arguments& arguments) {
 	if (http.tokens.empty() && !on_loopback(address))
 		throw Error("--listen " + address + " is open to others: give a --token-file ('bhfarm token new' makes one)");
 
+	// Strips are unpacked by the thousand: the memory for one serves for the next, rather than going back to the system.
+	mallopt(M_MMAP_THRESHOLD, 32 << 20);
+	mallopt(M_TRIM_THRESHOLD, 64 << 20);
 	// A connection is a descriptor.
 	rlimit descriptors{};
 	if (getrlimit(RLIMIT_NOFILE, &descriptors) == 0) {

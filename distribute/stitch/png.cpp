@@ -2,9 +2,11 @@
 #include "distribute/common/error.h"
 #include "distribute/common/hash.h"
 #include "distribute/stitch/picture.h"
+#include "distribute/stitch/png_join.h"
 
 #include <png.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <utility>
@@ -25,20 +27,6 @@ struct Closer {
 	void operator()(std::FILE* f) const { std::fclose(f); }
 };
 using File = std::unique_ptr<std::FILE, Closer>;
-
-/// What a picture is made of, apart from its height.
-struct Kind {
-	png_uint_32 width = 0;
-	int depth = 0, colours = 0;
-	bool has_gamma = false, has_srgb = false;
-	png_fixed_point gamma = 0;
-	int intent = 0;
-
-	bool operator==(const Kind& o) const {
-		return width == o.width && depth == o.depth && colours == o.colours && has_gamma == o.has_gamma &&
-			   has_srgb == o.has_srgb && gamma == o.gamma && intent == o.intent;
-	}
-};
 
 class Reader {
 public:
@@ -84,15 +72,13 @@ private:
 
 class Writer {
 public:
-	Writer(const Path& path, const Kind& kind, int height, int compression)
-		: name(path.string()), file(std::fopen(path.c_str(), "wb")) {
+	Writer(const Path& path, const Kind& kind, int height) : name(path.string()), file(std::fopen(path.c_str(), "wb")) {
 		if (!file)
 			throw system_error("cannot write " + name);
 		png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &name, fail, hush);
 		info = png_create_info_struct(png);
 		try {
 			png_init_io(png, file.get());
-			png_set_compression_level(png, compression);
 			png_set_IHDR(png, info, kind.width, static_cast<png_uint_32>(height), kind.depth, kind.colours, PNG_INTERLACE_NONE,
 				PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
 			if (kind.has_srgb)
@@ -122,8 +108,10 @@ private:
 	png_infop info;
 };
 
-/// Strips are packed quickly, pictures well.
-constexpr int quick = 1, well = 6;
+std::string name_of(const Kind& kind, const std::string& pixels) {
+	return sha256("png " + std::to_string(kind.colours) + " " + std::to_string(kind.depth) + " " + std::to_string(kind.gamma) +
+				  "\n" + pixels);
+}
 
 } // namespace
 
@@ -132,37 +120,47 @@ void cut(const Path& whole, int row, int rows, const Path& strip) {
 	if (in.height < static_cast<png_uint_32>(row + rows))
 		throw Error(
 			whole.string() + " has " + std::to_string(in.height) + " rows; " + std::to_string(row + rows) + " are needed");
-	Writer out(strip, in.kind, rows, quick);
 	Row pixels;
+	std::string all;
 	for (int i = 0; i < row + rows; ++i) {
 		in.next(pixels);
 		if (i >= row)
-			out.next(pixels);
+			all.append(reinterpret_cast<const char*>(pixels.data()), pixels.size());
 	}
-	out.end();
+	write_joinable(strip, in.kind, all);
 }
 
 std::string check_strip(const JobSpec& spec, int rows, const Path& strip) {
-	Reader in(strip);
-	if (in.kind.width != static_cast<png_uint_32>(spec.width) || in.height != static_cast<png_uint_32>(rows) ||
-		in.kind.depth != spec.bits)
-		throw Error("the strip is " + std::to_string(in.kind.width) + "x" + std::to_string(in.height) + " of " +
-					std::to_string(in.kind.depth) + " bits; " + std::to_string(spec.width) + "x" + std::to_string(rows) + " of " +
-					std::to_string(spec.bits) + " are needed");
+	const auto fits = [&](const Kind& kind, std::size_t height) {
+		if (kind.width != static_cast<png_uint_32>(spec.width) || height != static_cast<std::size_t>(rows) ||
+			kind.depth != spec.bits)
+			throw Error("the strip is " + std::to_string(kind.width) + "x" + std::to_string(height) + " of " +
+						std::to_string(kind.depth) + " bits; " + std::to_string(spec.width) + "x" + std::to_string(rows) +
+						" of " + std::to_string(spec.bits) + " are needed");
+	};
+	Reader in(strip); // its header
+	fits(in.kind, in.height);
+	if (is_joinable(strip)) {
+		Kind kind;
+		const std::string pixels = read_joinable(strip, kind);
+		fits(kind, pixels.size() / kind.row_bytes());
+		return name_of(kind, pixels);
+	}
 	Row pixels;
-	std::string all = "png " + std::to_string(in.kind.colours) + " " + std::to_string(in.kind.depth) + " " +
-					  std::to_string(in.kind.gamma) + "\n";
+	std::string all;
 	for (int i = 0; i < rows; ++i) {
 		in.next(pixels);
 		all.append(reinterpret_cast<const char*>(pixels.data()), pixels.size());
 	}
 	in.end();
-	return sha256(all);
+	return name_of(in.kind, all);
 }
 
 void stitch(const JobSpec& spec, const std::vector<Path>& strips, const Path& picture) {
+	if (std::all_of(strips.begin(), strips.end(), is_joinable))
+		return join(strips, spec.height, picture);
 	const Kind kind = Reader(strips.at(0)).kind;
-	Writer out(picture, kind, spec.height, well);
+	Writer out(picture, kind, spec.height);
 	int done = 0;
 	Row pixels;
 	for (const auto& strip : strips) {

@@ -2,7 +2,7 @@
 // The job that the crowd works on.
 #include "distribute/common/files.h"
 #include "distribute/common/hash.h"
-#include "distribute/protocol/messages.h"
+#include "distribute/stitch/picture.h"
 #include "tests/distribute/crowd/crowd.h"
 
 #include <nlohmann/json.hpp>
@@ -27,10 +27,11 @@ std::string make_strip(int width, int rows) {
 	image.height = static_cast<png_uint_32>(rows);
 	image.format = PNG_FORMAT_RGB;
 	const farm::ScratchFolder scratch(farm::fs::temp_directory_path());
-	const farm::fs::path whole = scratch.path() / "whole.png";
+	const farm::fs::path whole = scratch.path() / "whole.png", strip = scratch.path() / "strip.png";
 	if (!png_image_write_to_file(&image, whole.c_str(), 0, pixels.data(), 0, nullptr))
 		throw std::runtime_error(image.message);
-	return farm::read_file(whole);
+	farm::cut(farm::Format::png, whole, 0, rows, strip); // as workers do
+	return farm::read_file(strip);
 }
 
 Awaitable<long> submit(Line& line, int width, int rows, int strips_per_frame, int frames) {
