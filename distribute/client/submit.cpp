@@ -30,11 +30,18 @@ namespace {
 /// povray traces whole blocks of so many rows; cuts elsewhere would trace some twice.
 constexpr int block = 32;
 
-/// So long that parsing is under a twentieth of it, so short that the job's last strips keep every slot busy; half a minute at
-/// most.
+/// What each strip costs beside its pixels and its parse, about: povray's start, a picture written and read, the way to the
+/// server.
+constexpr double start_seconds = 0.05;
+
+/// At the job's end slots wait for the last strips, half of one each, but for the one that renders it; and each strip is parsed
+/// anew. The length for which both cost the same is the best: s with (cost/s) = (1 - 1/slots)/2 * s/share. Never so short that
+/// parsing is above a twentieth of it; half a minute at most, that there is something to see and little to lose.
 double good_seconds(const Gathered& files, int frames, int slots) {
-	const double last = files.frame_seconds * frames / (8.0 * slots);
-	return std::max(20 * files.parse_seconds, std::min(30.0, last));
+	constexpr double most = 30;
+	const double share = files.frame_seconds * frames / slots, waits = 0.5 * (1 - 1.0 / slots);
+	const double best = slots > 1 ? std::sqrt((files.parse_seconds + start_seconds) * share / waits) : most;
+	return std::max(20 * files.parse_seconds, std::min(most, best));
 }
 
 int strip_rows(const JobSpec& spec, const Gathered& files, const std::string& strips, int slots) {
@@ -51,7 +58,7 @@ int strip_rows(const JobSpec& spec, const Gathered& files, const std::string& st
 		return (spec.height + count - 1) / count;
 	if (strips == "auto") {
 		const double many = files.frame_seconds / good_seconds(files, spec.frames(), slots);
-		count = static_cast<int>(std::clamp(std::ceil(many), 1.0, static_cast<double>(blocks)));
+		count = static_cast<int>(std::clamp(std::round(many), 1.0, static_cast<double>(blocks)));
 	}
 	return (blocks + count - 1) / count * block;
 }

@@ -15,7 +15,7 @@ if ! command -v clang++ >/dev/null || ! echo 'extern "C" int LLVMFuzzerTestOneIn
 	exit 77
 fi
 sources=(distribute/common/{error,files,hash}.cpp distribute/protocol/*.cpp distribute/http/router.cpp distribute/scene/{ini,switches}.cpp
-	distribute/stitch/{exr,picture,png}.cpp tests/distribute/fuzz.cpp)
+	distribute/stitch/{exr,picture,png,png_filter,png_join}.cpp tests/distribute/fuzz.cpp)
 if [ ! -x "$fuzz" ] || [ -n "$(find distribute tests/distribute -newer "$fuzz" -name '*.[ch]*')" ]; then
 	# Clang 14 has C++20's coroutines, which Boost 1.74 does not know of.
 	flags=(-std=c++20 -O1 -g1 -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all -I. -DBOOST_ASIO_HAS_CO_AWAIT -DBOOST_ASIO_HAS_STD_COROUTINE
