@@ -39,8 +39,8 @@ std::string shown(const std::string& text);
 bool is_plain_name(const std::string& name);
 /// A relative path of such names that stays inside.
 bool is_inner_path(const std::string& path);
-/// One line of an INI file that POV-Ray reads as one key and its value, whatever stands before and after: no section, no switch, no
-/// comment, no quote left open, no second word.
+/// One line of an INI file that POV-Ray reads as one key and its value, whatever stands before and after: no section, no switch,
+/// no comment, no quote left open, no second word.
 bool is_ini_setting(const std::string& line);
 
 } // namespace farm
