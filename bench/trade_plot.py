@@ -9,7 +9,7 @@ import math
 import os
 import sys
 
-DEFAULT = ("rk4", 5e-4, 1e4)
+DEFAULT = ("rk4", 1e-4, 1e4)
 GOAL = 0.5
 DIRECT = ("far", "middle", "near", "disc", "wall", "floor", "close")
 MIRRORS = ("mirror", "twice")

@@ -2,6 +2,7 @@
 #include "blackhole/atlas.h"
 
 #include "blackhole/chords.h"
+#include "blackhole/turn.h"
 
 #include <algorithm>
 
@@ -158,7 +159,7 @@ void Atlas::chart(Sheet& sheet, bool turning, double from, double to) {
 	}
 }
 
-bool Atlas::locate(const Sheet& sheet, double b, int& row, double* weight) const {
+[[gnu::always_inline]] inline bool Atlas::locate(const Sheet& sheet, double b, int& row, double* weight) const {
 	if (sheet.rows == 0 || std::fabs(b - critical_b) < band * critical_b || !(b >= narrowest && b <= widest))
 		return false;
 	const double x = ((b > critical_b ? turning_coordinate(b) : falling_coordinate(b)) - sheet.first) / sheet.step;
@@ -211,11 +212,14 @@ bool Atlas::through(const Vec3& x, const Vec3& d, Escape& out) const {
 	const double* row = turning_.through.data() + i;
 	const double outward = -s * speed, across = b / R;
 	out.phi = outward * (weight[0] * row[0] + weight[1] * row[1] + weight[2] * row[2] + weight[3] * row[3]);
-	const double c = std::cos(out.phi), t = std::sin(out.phi);
-	const Vec3 e1 = (1 / R) * x, e2 = (1 / (twist * R)) * cross(axis, x);
+	double c, t;
+	turn_far(out.phi, c, t);
+	// In x and d; e2, at right angles to x, is (R^2 d - s x) / (twist R).
+	const double per_x = 1 / R, per_twist = 1 / twist, back = s * per_x * per_twist, on = R * per_twist;
 	const double size = 1 / std::sqrt(outward * outward + across * across), p = size * outward, q = size * across;
-	out.at = c * e1 + t * e2;
-	out.tangent = (p * c - q * t) * e1 + (p * t + q * c) * e2;
+	const double pc = p * c - q * t, pt = p * t + q * c;
+	out.at = (c * per_x - t * back) * x + (t * on) * d;
+	out.tangent = (pc * per_x - pt * back) * x + (pt * on) * d;
 	return true;
 }
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-/// Cosine and sine of a step's angle.
+/// Cosine and sine of a step's angle, or of a whole path's.
 #ifndef BLACKHOLE_TURN_H
 #define BLACKHOLE_TURN_H
+
+#include <utility>
 
 namespace blackhole {
 
@@ -15,6 +17,21 @@ inline void turn(double a, double& cosine, double& sine) {
 		c = n + q * c;
 	sine = a * s;
 	cosine = c;
+}
+
+/// Of any a >= 0 of some turns, to 1e-15 a.
+inline void turn_far(double a, double& cosine, double& sine) {
+	const double rounded = a * 0.6366197723675814 + 0.5;
+	const int quarters = static_cast<int>(rounded);
+	turn(a - quarters * 1.5707963267948966, cosine, sine);
+	if (quarters & 1) {
+		std::swap(cosine, sine);
+		cosine = -cosine;
+	}
+	if (quarters & 2) {
+		cosine = -cosine;
+		sine = -sine;
+	}
 }
 
 } // namespace blackhole

@@ -34,7 +34,7 @@ void Bent_Path::Record(const VECTOR from, const VECTOR to, size_t hole, bool tes
 // A piece of the way that hit nothing.
 void Bent_Path::Pass(const VECTOR from, const Vec3& direction, DBL length)
 {
-	if(state->volume)
+	if(volume)
 	{
 		Bent_Segment::Span span;
 		Assign_Vector(span.from, from);
@@ -82,43 +82,49 @@ bool Bent_Path::Nowhere(Intersection& isect)
 }
 
 // In a scene of one hole and nothing to hit: only the direction in which the ray leaves is wanted.
-bool Bent_Path::To_Sky(VECTOR from, Vec3& direction, Intersection& isect)
+bool Bent_Path::To_Sky(Intersection& isect)
 {
 	Bent_Segment& s = *state;
 	const Blackhole& hole = *bent->holes.Holes()[0];
-	const DBL R = hole.Settings().effect_radius;
-	Vec3 x = hole.To_Hole(from);
-	const DBL along = dot(x, direction), off = dot(x, x) - R * R, square = along * along - off;
+	const blackhole::Atlas& atlas = bent->holes.Atlas_Of(0);
+	const DBL R = atlas.settings().effect_radius;
+	Vec3 direction = Vec3_Of(original.Direction);
+	Vec3 x = hole.To_Hole(original.Origin);
+	const DBL off = dot(x, x) - R * R, size = dot(direction, direction);
 	s.moved = true;
 	isect.Depth = s.budget;
-	if(!(dot(direction, direction) > 0.5)) // not a number
-		return Nowhere(isect);
-	if((off < 0.0) || ((along < 0.0) && (square > 0.0)))
+	if((off < 0.0) || !(fabs(size - 1.0) <= 1e-12) || (bent->holes.Falling() != NULL))
 	{
-		blackhole::Escape exit;
-		bent->counts.Entered++;
-		bool escaped = false;
-		if(off >= 0.0)
+		VECTOR ignored;
+		if(!Enter(ignored, direction))
 		{
-			x = x + (off / (sqrt(square) - along)) * direction;
-			escaped = bent->holes.Atlas_Of(0).through(x, direction, exit);
+			bent->counts.Entered++;
+			return Swallowed(isect);
 		}
-		(escaped ? bent->counts.Charted : bent->counts.Closed)++;
-		if(!escaped && !escape(x, direction, R, exit))
-		{
-			bent->counts.Captured++;
-			s.captured = true;
-			isect.Depth = 0.0;
-			return End_With("horizon", false);
-		}
-		bent->counts.Most_Swept = max(bent->counts.Most_Swept, exit.phi);
-		direction = exit.tangent;
-		VECTOR out;
-		hole.To_Scene(R * exit.at, out);
-		Leave(out, direction);
+		if(!(dot(direction, direction) > 0.5)) // not a number
+			return Nowhere(isect);
 	}
-	else
-		Leave(from, direction);
+	const DBL along = dot(x, direction), square = along * along - off;
+	// Past the sphere the ray is as it was given, but for the camera's frame.
+	if((off >= 0.0) && ((along >= 0.0) || (square <= 0.0)))
+	{
+		Assign_Vec3(s.chord.Direction, direction);
+		return End_With("sky", false);
+	}
+	blackhole::Escape exit;
+	bent->counts.Entered++;
+	bool charted = false;
+	if(off >= 0.0)
+	{
+		x = x + (off / (sqrt(square) - along)) * direction;
+		charted = atlas.through(x, direction, exit);
+	}
+	(charted ? bent->counts.Charted : bent->counts.Closed)++;
+	if(!charted && !escape(x, direction, R, exit))
+		return Swallowed(isect);
+	bent->counts.Most_Swept = max(bent->counts.Most_Swept, exit.phi);
+	Assign_Vec3(s.chord.Direction, exit.tangent);
+	hole.To_Scene(R * exit.at, s.chord.Origin);
 	return End_With("sky", false);
 }
 
@@ -126,7 +132,7 @@ bool Bent_Path::To_Sky(VECTOR from, Vec3& direction, Intersection& isect)
 bool Bent_Path::Only_Exit(const Blackhole& hole, VECTOR from, Vec3& direction)
 {
 	Bent_Segment& s = *state;
-	const DBL R = hole.Settings().effect_radius;
+	const DBL R = hole.Rim();
 	blackhole::Escape exit;
 	s.moved = true;
 	s.captured = !escape(hole.To_Hole(from), direction, R, exit);
@@ -151,7 +157,7 @@ bool Bent_Path::Through(size_t index, VECTOR from, Vec3& direction, Intersection
 	Blackhole_Counts& counts = bent->counts;
 	// Only what the scene requires: no chords where nothing can be hit, filled, recorded or measured along them; and no path
 	// where its length is not wanted either, by something beyond the sphere that fades, or radiosity.
-	const bool chords = !bent->holes.Shells_Of(index).Empty() || s.volume || (bent->recorder != NULL) || (s.budget < BOUND_HUGE);
+	const bool chords = !bent->holes.Shells_Of(index).Empty() || volume || (bent->recorder != NULL) || (s.budget < BOUND_HUGE);
 	counts.Entered++;
 	if(!(dot(direction, direction) > 0.5)) // not a number
 		return Nowhere(isect);
@@ -165,7 +171,7 @@ bool Bent_Path::Through(size_t index, VECTOR from, Vec3& direction, Intersection
 		const DBL drift = route.drift();
 		s.drift = max(s.drift, drift);
 		counts.Charted++;
-		counts.Filled += s.volume;
+		counts.Filled += volume;
 		counts.Most_Swept = max(counts.Most_Swept, route.swept());
 		counts.Drift = max(counts.Drift, drift);
 		counts.Drifted += (drift > hole.Tolerance);
@@ -179,7 +185,7 @@ bool Bent_Path::Through(size_t index, VECTOR from, Vec3& direction, Intersection
 	counts.Paths++;
 	counts.Steps += path.nodes().size() - 1;
 	counts.Most_Steps = max(counts.Most_Steps, (unsigned int)(path.nodes().size() - 1));
-	counts.Filled += s.volume;
+	counts.Filled += volume;
 	(path.exhausted() ? counts.Exhausted : counts.Failed) += !solved;
 	counts.Most_Swept = max(counts.Most_Swept, path.swept());
 	const DBL drift = path.drift();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <cmath>
+#include <cstring>
 
 // frame.h must always be the first POV file included (pulls in platform config)
 #include "backend/frame.h"
@@ -20,6 +21,17 @@ using blackhole::Vec3;
 // A ray may be passed from hole to hole; light that never leaves is as good as captured.
 static const int MOST_PASSAGES = 1000;
 
+// As Ray's own assignment, but for its flags, which that takes one by one: seventy instructions. They come last.
+static void Copy(Ray& to, const Ray& from)
+{
+	Assign_Vector(to.Origin, from.Origin);
+	Assign_Vector(to.Direction, from.Direction);
+	to.GetInteriors() = from.GetInteriors();
+	char *last = (char *)(&to.GetSpectralBand());
+	const char *rest = (const char *)(&from.GetSpectralBand());
+	memcpy(last, rest, (const char *)(&from + 1) - rest);
+}
+
 void Bent_Path::Begin(float weight)
 {
 	if(original.IsPhotonRay() || original.IsSubsurfaceRay())
@@ -28,7 +40,7 @@ void Bent_Path::Begin(float weight)
 		bent->pool.push_back(new Bent_Segment());
 	state = bent->pool[bent->depth++];
 	Bent_Segment& s = *state;
-	s.chord = original;
+	Copy(s.chord, original);
 	s.has_tangent = s.captured = s.moved = false;
 	s.travelled = 0.0;
 	s.chords = 0;
@@ -73,6 +85,15 @@ DBL Bent_Path::Bent_Travelled() const
 	return state->travelled;
 }
 
+// No light comes from there.
+bool Bent_Path::Swallowed(Intersection& isect)
+{
+	bent->counts.Captured++;
+	state->captured = true;
+	isect.Depth = 0.0;
+	return End_With("horizon", false);
+}
+
 bool Bent_Path::End_With(const char *end, bool found)
 {
 	state->end = end;
@@ -97,7 +118,7 @@ bool Bent_Path::Enter(VECTOR origin, Vec3& direction)
 			bent->counts.Origins_Inside++;
 			return false;
 		}
-		return falling_to_coordinate(x, direction, falling->Settings().effect_radius, direction);
+		return falling_to_coordinate(x, direction, falling->Rim(), direction);
 	}
 	const Blackhole *hole = bent->holes.At(origin);
 	if(hole == NULL)
@@ -109,7 +130,7 @@ bool Bent_Path::Enter(VECTOR origin, Vec3& direction)
 		return false;
 	}
 	if(!original.IsPrimaryRay() || (hole->Camera != Blackhole::COORDINATE_CAMERA))
-		direction = static_to_coordinate(x, direction, hole->Settings().effect_radius);
+		direction = static_to_coordinate(x, direction, hole->Rim());
 	return true;
 }
 
@@ -144,7 +165,10 @@ size_t Bent_Path::Next_Sphere(const VECTOR from, const Vec3& direction, size_t l
 
 bool Bent_Path::Find_Intersection(Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post)
 {
-	const bool found = Follow(isect, pre, post);
+	Bent_Segment& s = *state;
+	s.budget = isect.Depth < BOUND_HUGE ? isect.Depth : HUGE_VAL;
+	const bool sky = bent->holes.Only_Sky() && !volume && (bent->recorder == NULL) && (s.budget == HUGE_VAL);
+	const bool found = sky ? To_Sky(isect) : Follow(isect, pre, post);
 	if((bent->ends != NULL) && !original.IsPretraceRay())
 	{
 		const Vec3 nowhere = { 0.0, 0.0, 0.0 };
@@ -160,17 +184,11 @@ bool Bent_Path::Follow(Intersection& isect, const RayObjectCondition& pre, const
 	Bent_Segment& s = *state;
 	VECTOR at;
 	Vec3 direction;
-	s.budget = isect.Depth < BOUND_HUGE ? isect.Depth : HUGE_VAL;
 	if(!Enter(at, direction))
 	{
-		s.captured = true;
-		isect.Depth = 0.0;
 		bent->counts.Entered++;
-		bent->counts.Captured++;
-		return End_With("horizon", false);
+		return Swallowed(isect);
 	}
-	if(bent->holes.Only_Sky() && !s.volume && (bent->recorder == NULL) && (s.budget == HUGE_VAL))
-		return To_Sky(at, direction, isect);
 	size_t left = NO_HOLE;
 	for(int passages = 0; passages < MOST_PASSAGES; passages++)
 	{

@@ -18,7 +18,7 @@ class Bent_Path
 {
 	public:
 		/// weight: the most of the pixel's light that the ray can carry.
-		Bent_Path(Bent_Rays *b, const Ray& ray, float weight) : bent(b), state(NULL), original(ray) { if(bent != NULL) Begin(weight); }
+		Bent_Path(Bent_Rays *b, const Ray& ray, float weight) : bent(b), state(NULL), original(ray), volume(false) { if(bent != NULL) Begin(weight); }
 		~Bent_Path() { if(state != NULL) End(); }
 
 		/// Whether the ray is ours; photons and subsurface rays go straight.
@@ -32,7 +32,7 @@ class Bent_Path
 		/// Length of all chords before the last, zero for a straight ray.
 		DBL Travelled() const { return state == NULL ? 0.0 : Bent_Travelled(); }
 		/// Media, rainbow and fog of the whole way, as TraceRay does for a straight ray.
-		void Compute_Volume(Intersection& isect, bool found, Colour& colour, Trace::TraceTicket& ticket);
+		void Compute_Volume(Intersection& isect, bool found, Colour& colour, Trace::TraceTicket& ticket) { if(volume) Volume_Of(isect, found, colour, ticket); }
 
 		// For trace.cpp's own fog and rainbow: what the way before the chord in hand adds. Straight rays: no change.
 
@@ -50,10 +50,12 @@ class Bent_Path
 		bool Enter(VECTOR origin, blackhole::Vec3& direction);
 		size_t Next_Sphere(const VECTOR from, const blackhole::Vec3& direction, size_t left, DBL& distance) const;
 		bool End_With(const char *end, bool found);
+		bool Swallowed(Intersection& isect);
 		// bentvolume.cpp
 		static DBL Bent_Fog(const Bent_Rays& bent, const Ray& ray, DBL width, const FOG& fog, DBL att);
 		static DBL Bent_Rainbow(const Bent_Rays& bent, const Ray& ray, DBL distance, DBL least);
 		void Set_Volume();
+		void Volume_Of(Intersection& isect, bool found, Colour& colour, Trace::TraceTicket& ticket);
 		void Take(size_t span, Intersection& isect);
 		// bentlegs.cpp
 		bool Straight(const VECTOR from, const blackhole::Vec3& direction, DBL length, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
@@ -62,7 +64,7 @@ class Bent_Path
 		bool Nearest_Of(const std::vector<unsigned int>& objects, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
 		bool Nothing_There(const VECTOR from, const blackhole::Vec3& direction, DBL length, Intersection& isect);
 		bool Nowhere(Intersection& isect);
-		bool To_Sky(VECTOR from, blackhole::Vec3& direction, Intersection& isect);
+		bool To_Sky(Intersection& isect);
 		bool Only_Exit(const Blackhole& hole, VECTOR from, blackhole::Vec3& direction);
 		void Leave(VECTOR from, const blackhole::Vec3& direction);
 		template<typename Way> bool Ended(const Blackhole& hole, const Way& way, bool chords, bool solved, VECTOR from, blackhole::Vec3& direction, Intersection& isect);
@@ -80,6 +82,7 @@ class Bent_Path
 		Bent_Rays *bent;
 		Bent_Segment *state;
 		const Ray& original;
+		bool volume; ///< fog, rainbow or media: spans are kept
 
 		Bent_Path(const Bent_Path&);
 		Bent_Path& operator=(const Bent_Path&);

@@ -25,7 +25,9 @@ Bent_Rays *Bent_Rays::Create(const SceneData& scene, Trace& trace)
 }
 
 Bent_Rays::Bent_Rays(const SceneData& s, Trace& t) :
-	scene(s), holes(*s.blackHoles), trace(t), counts(*s.blackHoles->New_Counts()), depth(0), recorder(NULL), ends(NULL)
+	scene(s), holes(*s.blackHoles), trace(t), counts(*s.blackHoles->New_Counts()), depth(0),
+	fills((s.fog != NULL) || (s.rainbow != NULL) || !s.atmosphere.empty()),
+	keeps((holes.Paths() != NULL) || (holes.Ends() != NULL)), recorder(NULL), ends(NULL)
 {
 }
 
@@ -81,7 +83,7 @@ void Bent_Rays::Turn(Ray& ray, bool to_static) const
 	if(hole == NULL)
 		return;
 	const Vec3 x = hole->To_Hole(ray.Origin), d = Vec3_Of(ray.Direction);
-	const DBL R = hole->Settings().effect_radius;
+	const DBL R = hole->Rim();
 	Assign_Vec3(ray.Direction, to_static ? coordinate_to_static(x, d, R) : static_to_coordinate(x, d, R));
 }
 

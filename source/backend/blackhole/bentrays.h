@@ -33,8 +33,8 @@ class Bent_Rays
 		// The hooks call these with what may be NULL, and then they do nothing.
 
 		/// A camera ray of this pixel follows; decides whether its paths are kept.
-		static void Begin_Pixel(Bent_Rays *b, DBL x, DBL y, DBL width, DBL height) { if(b != NULL) b->Begin(x, y, width, height); }
-		static void End_Pixel(Bent_Rays *b) { if(b != NULL) b->End(); }
+		static void Begin_Pixel(Bent_Rays *b, DBL x, DBL y, DBL width, DBL height) { if((b != NULL) && b->keeps) b->Begin(x, y, width, height); }
+		static void End_Pixel(Bent_Rays *b) { if((b != NULL) && b->keeps) b->End(); }
 		/// Whether a hole's horizon is between a point and its light (which goes straight).
 		static bool Blocks(const Bent_Rays *b, const Ray& light_ray, DBL depth) { return (b != NULL) && b->Blocks_Light(light_ray, depth); }
 		/// A ray's direction from coordinates to the static frame at its origin, and back.
@@ -60,6 +60,8 @@ class Bent_Rays
 		std::vector<unsigned int> candidates, fewer, chosen; ///< of the arc, of a part of it, and of the chord in hand
 		std::vector<Bent_Segment *> pool; ///< states, by depth of recursion
 		size_t depth;
+		const bool fills;                  ///< the space has fog, a rainbow or an atmosphere
+		const bool keeps;                  ///< paths or ends are kept, of some pixels
 		Recorder *recorder;                ///< of the pixel in hand; NULL: not kept
 		End_Recorder *ends;                ///< likewise
 };

@@ -264,7 +264,7 @@ bool Bent_Path::Along(Walk& walk, size_t index, bool emerges, Intersection& isec
 {
 	// As many chords as turn by a third of a radian or so; a single one is no arc.
 	const int in_arc = min(32, int(0.25 / sqrt(bent->holes.Holes()[index]->Tolerance)));
-	const bool every = (in_arc < 2) || state->volume || (bent->recorder != NULL) || (state->budget < BOUND_HUGE) || emerges;
+	const bool every = (in_arc < 2) || volume || (bent->recorder != NULL) || (state->budget < BOUND_HUGE) || emerges;
 	return every ? Along_Chords(walk, index, emerges, isect, pre, post) : Along_Arcs(walk, index, in_arc, isect, pre, post);
 }
 

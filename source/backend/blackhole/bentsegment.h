@@ -43,7 +43,6 @@ struct Bent_Segment
 	blackhole::Vec3 tangent; ///< the path's at the hit, coordinates
 	bool has_tangent;        ///< the hit is inside an effect sphere
 	bool captured;
-	bool volume;             ///< fog, rainbow or media: spans are kept
 	bool moved;              ///< no longer on the ray's first chord
 	DBL budget;              ///< the farthest the ray may go; infinite unless the caller limits it
 	DBL travelled;           ///< length of the chords before the one in hand

@@ -25,11 +25,10 @@ namespace pov
 // Whether there is anything along this ray's way: else no chord is kept for it.
 void Bent_Path::Set_Volume()
 {
-	const SceneData& scene = bent->scene;
 	const RayInteriorVector& interiors = state->chord.GetInteriors();
-	state->volume = (scene.fog != NULL) || (scene.rainbow != NULL) || !scene.atmosphere.empty();
-	for(RayInteriorVector::const_iterator i = interiors.begin(); (i != interiors.end()) && !state->volume; i++)
-		state->volume = !(*i)->media.empty();
+	volume = bent->fills;
+	for(RayInteriorVector::const_iterator i = interiors.begin(); (i != interiors.end()) && !volume; i++)
+		volume = !(*i)->media.empty();
 }
 
 // Makes a span the chord in hand, from start to end.
@@ -42,12 +41,12 @@ void Bent_Path::Take(size_t index, Intersection& isect)
 	VEvaluateRay(isect.IPoint, span.from, span.length, span.direction);
 }
 
-void Bent_Path::Compute_Volume(Intersection& isect, bool found, Colour& colour, Trace::TraceTicket& ticket)
+void Bent_Path::Volume_Of(Intersection& isect, bool found, Colour& colour, Trace::TraceTicket& ticket)
 {
 	Bent_Segment& s = *state;
 	Trace& trace = bent->trace;
 	const SceneData& scene = bent->scene;
-	if(!s.volume || !(trace.qualityFlags & Q_VOLUME) || !s.chord.IsHollowRay())
+	if(!(trace.qualityFlags & Q_VOLUME) || !s.chord.IsHollowRay())
 		return;
 	const size_t last = s.spans.size();
 	Bent_Segment::Span in_hand;

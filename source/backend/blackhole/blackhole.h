@@ -43,6 +43,8 @@ class Blackhole : public ObjectBase
 		virtual void Compute_BBox();
 
 		DBL Reach() const { return Effect_Radius > 0.0 ? Effect_Radius : 10000.0 * Radius; }
+		/// The effect radius in Schwarzschild radii.
+		DBL Rim() const { return Reach() / Radius; }
 		blackhole::Settings Settings() const;
 		/// Scene coordinates to the hole's: relative to the centre, in Schwarzschild radii; and back.
 		blackhole::Vec3 To_Hole(const VECTOR p) const
@@ -56,6 +58,12 @@ class Blackhole : public ObjectBase
 		}
 		/// Distance of a point from the centre, scene units.
 		DBL Distance(const VECTOR p) const;
+		/// Whether a point is inside the effect sphere.
+		bool Reaches(const VECTOR p) const
+		{
+			const DBL x = p[X] - Center[X], y = p[Y] - Center[Y], z = p[Z] - Center[Z], reach = Reach();
+			return x * x + y * y + z * z < reach * reach;
+		}
 		/// Whether the straight segment from p in direction d (unit) over the length meets the horizon.
 		bool Blocks(const VECTOR p, const VECTOR d, DBL length) const;
 };

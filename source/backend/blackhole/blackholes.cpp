@@ -138,14 +138,6 @@ std::string Blackholes::Prepare(const SceneData& scene, TraceThreadData *thread,
 	return report;
 }
 
-const Blackhole *Blackholes::At(const VECTOR p) const
-{
-	for(size_t i = 0; i < holes.size(); i++)
-		if(holes[i]->Distance(p) < holes[i]->Reach())
-			return holes[i];
-	return NULL;
-}
-
 Blackhole_Counts *Blackholes::New_Counts()
 {
 	boost::mutex::scoped_lock lock(mutex);

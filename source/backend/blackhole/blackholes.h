@@ -68,7 +68,13 @@ class Blackholes
 		const std::vector<unsigned int>& Outside() const { return outside; }
 
 		/// The hole in whose effect sphere the point lies, or NULL.
-		const Blackhole *At(const VECTOR p) const;
+		const Blackhole *At(const VECTOR p) const
+		{
+			for(size_t i = 0; i < holes.size(); i++)
+				if(holes[i]->Reaches(p))
+					return holes[i];
+			return NULL;
+		}
 		/// The hole with a falling camera, or NULL.
 		const Blackhole *Falling() const { return falling; }
 

@@ -50,7 +50,7 @@ void Local_Frame::Begin(const Bent_Rays *bent)
 	seen->hole = hole;
 	seen->x = hole->To_Hole(isect.IPoint);
 	const Vec3 scene_normal = Vec3_Of(**normal);
-	const DBL R = hole->Settings().effect_radius;
+	const DBL R = hole->Rim();
 	Assign_Vec3(seen->ray.Direction, coordinate_to_static(seen->x, Graze(way->tangent, Vec3_Of(ray->Direction), scene_normal), R));
 	seen->normal = *normal;
 	Bent_Turn(seen->normal);
@@ -66,7 +66,7 @@ void Local_Frame::End()
 
 void Local_Frame::Bent_Turn(Vector3d& n) const
 {
-	const Vec3 t = normal_to_static(seen->x, Vec3_Of(*n), seen->hole->Settings().effect_radius);
+	const Vec3 t = normal_to_static(seen->x, Vec3_Of(*n), seen->hole->Rim());
 	n = Vector3d(t.x, t.y, t.z);
 }
 
