@@ -7,9 +7,11 @@
 #include "distribute/common/error.h"
 #include "distribute/common/files.h"
 #include "distribute/common/hash.h"
+#include "distribute/common/process.h"
 
 #include <cstdio>
 #include <ctime>
+#include <unistd.h>
 
 namespace farm {
 
@@ -218,10 +220,22 @@ int token_command(const Words& words) {
 	return 0;
 }
 
-int source_command(const Words&) {
-	std::puts("This farm is free software under the GNU Affero General Public License, version 3 or later.\n"
-			  "Whoever uses it over a network is entitled to its source: ask who runs the server, or see docs/ and LICENSE of "
-			  "the version that runs here.");
+int source_command(const Words& words) {
+	const Arguments a(words, server_options);
+	help_if_asked(a,
+		"bhfarm source >FILE.tar.gz\nThe source of what runs here; with --server or BHFARM_SERVER, of what runs there.",
+		server_options);
+	if (!a.rest.empty())
+		throw Error("what is '" + a.rest[0] + "'? The source goes to stdout");
+	if (::isatty(1))
+		throw Error("the source is a .tar.gz: send it to a file, bhfarm source >povray-blackhole.tar.gz");
+	if (a.get("--server").empty() && !std::getenv("BHFARM_SERVER"))
+		return run({{(program_folder() / "bhfarm-server").string(), "--source"}, {}, {}, {}, 0});
+	const ScratchFolder scratch(fs::temp_directory_path());
+	connect(a).download("/source", scratch.path() / "source");
+	const std::string source = read_file(scratch.path() / "source");
+	if (std::fwrite(source.data(), 1, source.size(), stdout) != source.size() || std::fflush(stdout) != 0)
+		throw system_error("cannot write the source");
 	return 0;
 }
 

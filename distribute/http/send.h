@@ -20,6 +20,7 @@ template <class Body> http::response<Body> head(const Response& from, unsigned v
 	http::response<Body> answer(static_cast<http::status>(from.status), version);
 	answer.set(http::field::server, "bhfarm");
 	answer.set(http::field::content_type, from.type);
+	answer.set("X-Content-Type-Options", "nosniff"); // what strangers sent is what we say it is
 	for (const auto& [name, value] : from.headers)
 		answer.set(name, value);
 	answer.keep_alive(keep);

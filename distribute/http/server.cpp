@@ -2,7 +2,6 @@
 #include "distribute/http/server.h"
 
 #include "distribute/common/error.h"
-#include "distribute/common/hash.h"
 #include "distribute/http/send.h"
 
 #include <boost/asio.hpp>
@@ -86,6 +85,7 @@ void HttpServer::listen(const std::string& address) {
 		acceptor.listen(4096, error);
 	if (error)
 		throw Error("cannot listen on " + address + ": " + error.message());
+	settings.door->stands_at(acceptor.local_endpoint().port(), tls.has_value());
 	asio::co_spawn(context, accept(), asio::detached);
 }
 
@@ -153,19 +153,6 @@ template <class Stream> Awaitable<void> HttpServer::serve(Stream& stream, std::s
 		co_await stream.async_read_some(asio::buffer(rest), asio::redirect_error(asio::use_awaitable, error));
 }
 
-bool HttpServer::admits(const Request& request) const {
-	if (settings.tokens.empty())
-		return true;
-	const auto found = request.headers.find("authorization");
-	const std::string prefix = "Bearer ";
-	if (found == request.headers.end() || found->second.compare(0, prefix.size(), prefix) != 0)
-		return false;
-	bool good = false;
-	for (const auto& token : settings.tokens)
-		good = same_secret(token, found->second.substr(prefix.size())) || good;
-	return good;
-}
-
 // One request and its answer; false when the connection is to be closed.
 template <class Stream> Awaitable<bool> HttpServer::exchange(Stream& stream, Connection& connection) {
 	auto& lowest = beast::get_lowest_layer(stream);
@@ -188,8 +175,8 @@ template <class Stream> Awaitable<bool> HttpServer::exchange(Stream& stream, Con
 	Response response;
 	try {
 		const Route& route = router.find(request, std::string(header.get().target()));
-		if (route.access == Access::token && !admits(request))
-			throw HttpError(401, "a token is needed: Authorization: Bearer TOKEN");
+		if (route.access == Access::token)
+			settings.door->check(request);
 		if (open > settings.connections)
 			throw HttpError(503, "too many connections");
 		const auto limit = static_cast<std::uint64_t>(route.body_limit);
@@ -242,7 +229,8 @@ template <class Stream> Awaitable<bool> HttpServer::exchange(Stream& stream, Con
 		if (request.peer && request.peer->gone)
 			co_return false;
 	} catch (const HttpError& e) {
-		response = error_response(e.status, e.what());
+		response =
+			e.status == 401 && request.path == "/" && settings.sign_in ? settings.sign_in() : error_response(e.status, e.what());
 	} catch (const Error& e) {
 		response = error_response(400, e.what());
 	} catch (const std::exception& e) {

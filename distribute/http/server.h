@@ -3,6 +3,7 @@
 #ifndef FARM_HTTP_SERVER_H
 #define FARM_HTTP_SERVER_H
 
+#include "distribute/http/door.h"
 #include "distribute/http/router.h"
 
 #include <boost/asio/io_context.hpp>
@@ -14,7 +15,8 @@
 namespace farm {
 
 struct ServerSettings {
-	std::vector<std::string> tokens;                   ///< any of them opens; empty: no token is asked for
+	std::shared_ptr<Door> door;                        ///< never null
+	std::function<Response()> sign_in;                 ///< the answer to who asks for / and is not let in
 	std::filesystem::path tls_certificate, tls_key;    ///< PEM; both empty: plain HTTP
 	std::function<std::filesystem::path()> fresh_file; ///< names for bodies that go to files
 	int connections = 30000;                           ///< more are turned away with 503
@@ -39,7 +41,6 @@ private:
 	template <class Stream> Awaitable<void> serve(Stream& stream, std::string from);
 	template <class Stream> Awaitable<bool> exchange(Stream& stream, struct Connection& connection);
 	Awaitable<void> connection(boost::asio::ip::tcp::socket socket);
-	bool admits(const Request& request) const;
 
 	boost::asio::io_context& context;
 	const Router& router;

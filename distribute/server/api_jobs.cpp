@@ -5,31 +5,6 @@
 #include "distribute/server/api.h"
 
 namespace farm {
-namespace {
-
-/// One character a strip: w waits, o is out, s is settled, x was given up.
-std::string strip_letters(const Farm& farm, const Job& job) {
-	const auto state = farm.schedule().jobs().find(job.row.id);
-	if (state == farm.schedule().jobs().end())
-		return std::string(static_cast<size_t>(job.row.spec.strips()), job.row.stage == Stage::done ? 's' : 'w');
-	std::string letters;
-	letters.reserve(state->second.state.size());
-	for (const StripState s : state->second.state)
-		letters += "wosx"[static_cast<size_t>(s)];
-	return letters;
-}
-
-Awaitable<void> stream_events(Farm& farm, Sink& sink) {
-	Events::Watch watch(farm.news());
-	std::string text = "retry: 2000\n\n";
-	while (co_await sink.write(std::move(text))) {
-		text = co_await watch.next(15);
-		// A comment now and then shows that both ends are there.
-		text = text.empty() ? ":\n\n" : "data: " + text + "\n\n";
-	}
-}
-
-} // namespace
 
 void add_job_routes(Router& router, Farm& farm) {
 	router.add(
@@ -58,14 +33,6 @@ void add_job_routes(Router& router, Farm& farm) {
 		json whole = describe(farm, job);
 		whole["spec"] = job.row.spec;
 		co_return answer(whole);
-	});
-	router.add("GET", "/v1/jobs/*/strips", [&farm](Request& r) -> Awaitable<Response> {
-		const Job& job = farm.job(id_of(r.parts[0], "job"));
-		json frames = json::array();
-		for (size_t i = 0; i < job.stitched.size(); ++i)
-			if (job.stitched[i])
-				frames.push_back(job.row.spec.frame(static_cast<int>(i)));
-		co_return answer({{"strips", strip_letters(farm, job)}, {"frames_done", frames}});
 	});
 	router.add("GET", "/v1/jobs/*/pictures", [&farm](Request& r) -> Awaitable<Response> {
 		const Job& job = farm.job(id_of(r.parts[0], "job"));
@@ -139,13 +106,6 @@ void add_job_routes(Router& router, Farm& farm) {
 	router.add("DELETE", "/v1/jobs/*", [&farm](Request& r) -> Awaitable<Response> {
 		co_await farm.remove(id_of(r.parts[0], "job"));
 		co_return answer(json::object());
-	});
-	router.add("GET", "/v1/events", [&farm](Request&) -> Awaitable<Response> {
-		Response news;
-		news.type = "text/event-stream";
-		news.headers["Cache-Control"] = "no-store";
-		news.stream = [&farm](Sink& sink) { return stream_events(farm, sink); };
-		co_return news;
 	});
 }
 

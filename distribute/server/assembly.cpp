@@ -26,6 +26,13 @@ bool Farm::frame_complete(const Job& job, int index) const {
 	return true;
 }
 
+std::optional<fs::path> Farm::settled_strip(JobId id, int strip) const {
+	const auto state = scheduler.jobs().find(id);
+	if (state == scheduler.jobs().end() || scheduler.state(id, strip) != StripState::settled)
+		return std::nullopt;
+	return spool.strip(id, strip, digits(state->second.result[static_cast<size_t>(strip)].hash), job(id).row.spec.suffix());
+}
+
 std::vector<fs::path> Farm::strip_files(const Job& job, int index) const {
 	const int per = job.row.spec.strips_per_frame();
 	const auto& result = scheduler.jobs().at(job.row.id).result;
@@ -41,7 +48,7 @@ void Farm::strip_settled(JobId id, int strip) {
 		return;
 	const std::string pixels = digits(scheduler.jobs().at(id).result[static_cast<size_t>(strip)].hash);
 	note([=](Database& db) { rows::set_settled(db, id, strip, pixels); });
-	events.tell({{"event", "settled"}, {"job", id}, {"strip", strip}});
+	events.strip(id, strip);
 	const int index = strip / found->second.row.spec.strips_per_frame();
 	if (!found->second.stitched[static_cast<size_t>(index)] && frame_complete(found->second, index)) {
 		to_stitch.emplace_back(id, index);
@@ -68,6 +75,7 @@ Awaitable<void> Farm::assemble() {
 			again = all_jobs.count(id) > 0;
 			if (again)
 				all_jobs.at(id).doing = e.what();
+			events.job(id);
 		}
 		to_stitch.pop_front();
 		if (again) { // a full disk has to be emptied by somebody
@@ -102,7 +110,7 @@ Awaitable<void> Farm::stitch_frame(JobId id, int index) {
 	job.stitched[static_cast<size_t>(index)] = true;
 	job.doing.clear();
 	++job.frames_done;
-	events.tell({{"event", "frame"}, {"job", id}, {"frame", spec.frame(index)}});
+	events.strip(id, index * spec.strips_per_frame());
 	if (job.frames_done == spec.frames())
 		to_stitch.emplace_back(id, -1);
 }
@@ -116,6 +124,7 @@ Awaitable<void> Farm::finish(JobId id) {
 	std::string remark;
 	if (spec.film_rate > 0) {
 		found->second.doing = "encoding the film";
+		events.job(id);
 		std::vector<fs::path> pictures;
 		for (int i = 0; i < spec.frames(); ++i)
 			pictures.push_back(spool.frame(id, spec.picture(spec.frame(i))));

@@ -156,7 +156,7 @@ Awaitable<JobId> Farm::submit(JobSpec spec) {
 		row.spec = std::move(spec);
 		row.created = created;
 		enter(row);
-		events.tell({{"event", "job"}, {"job", id}});
+		events.job(id);
 		wake(row.spec.strips());
 	}
 	co_return id;
@@ -169,7 +169,7 @@ void Farm::set_stage(Job& job, Stage stage, const std::string& error) {
 	const JobId id = job.row.id;
 	const double ended = job.row.ended;
 	note([=](Database& db) { rows::set_stage(db, id, stage, error, ended); });
-	events.tell({{"event", "job"}, {"job", id}, {"stage", stage_name(stage)}});
+	events.job(id);
 }
 
 Awaitable<void> Farm::pause(JobId id, bool paused) {
@@ -219,7 +219,7 @@ Awaitable<void> Farm::remove(JobId id) {
 	all_jobs.erase(id);
 	auto clear = [this, id] { spool.remove_job(id); };
 	co_await in_pool(context, pool, clear);
-	events.tell({{"event", "removed"}, {"job", id}});
+	events.job(id);
 }
 
 std::string Farm::place(const JobSpec& spec, int strip) const {
@@ -233,7 +233,7 @@ std::string Farm::place(const JobSpec& spec, int strip) const {
 void Farm::apply(const Changes& changes) {
 	for (const Lease& lease : changes.ended) {
 		note([id = lease.id](Database& db) { rows::end_lease(db, id); });
-		events.tell({{"event", "ended"}, {"job", lease.job}, {"strip", lease.strip}, {"worker", lease.worker}});
+		events.strip(lease.job, lease.strip, lease.worker);
 	}
 	for (const StripRef& s : changes.reopened) {
 		note([s](Database& db) { rows::set_settled(db, s.job, s.strip, ""); });
@@ -244,14 +244,14 @@ void Farm::apply(const Changes& changes) {
 			--job.frames_done;
 			note([=](Database& db) { rows::set_frame(db, s.job, index, false); });
 		}
-		events.tell({{"event", "reopened"}, {"job", s.job}, {"strip", s.strip}});
+		events.strip(s.job, s.strip);
 	}
 	for (const StripRef& s : changes.settled)
 		strip_settled(s.job, s.strip);
 	for (const auto& [worker, why] : changes.aside) {
 		const auto guest = all_guests.find(worker);
 		say("worker " + (guest == all_guests.end() ? worker : guest->second.hello.name) + " is set aside: " + why);
-		events.tell({{"event", "aside"}, {"worker", worker}, {"why", why}});
+		events.worker(worker);
 	}
 	for (const WorkerId& worker : changes.gone) {
 		const auto guest = all_guests.find(worker);
@@ -260,7 +260,7 @@ void Farm::apply(const Changes& changes) {
 		say("worker " + guest->second.hello.name + " is not heard of any more");
 		if (!scheduler.workers().count(worker))
 			all_guests.erase(guest);
-		events.tell({{"event", "gone"}, {"worker", worker}});
+		events.worker(worker);
 	}
 	for (const StripRef& s : changes.given_up) {
 		Job& job = all_jobs.at(s.job);

@@ -73,6 +73,8 @@ public:
 	const Job& job(JobId id) const;
 	const std::map<WorkerId, Guest>& guests() const { return all_guests; }
 	const Scheduler& schedule() const { return scheduler; }
+	/// A strip's picture, if it is settled and its job not over.
+	std::optional<fs::path> settled_strip(JobId job, int strip) const;
 	/// Seconds until the job is done, by what its strips took so far; negative: cannot be told.
 	double eta(JobId job) const;
 	Ledger& book() { return ledger; }

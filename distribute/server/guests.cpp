@@ -30,7 +30,7 @@ void Farm::welcome(const Hello& hello, const std::string& from) {
 	guest.hello = hello;
 	guest.from = from;
 	scheduler.add_worker(hello.id, hello.slots, now(), false);
-	events.tell({{"event", "worker"}, {"worker", hello.id}});
+	events.worker(hello.id);
 }
 
 Awaitable<void> Farm::leave(WorkerId worker) {
@@ -41,7 +41,7 @@ Awaitable<void> Farm::leave(WorkerId worker) {
 		all_guests.erase(guest);
 	}
 	apply(changes);
-	events.tell({{"event", "gone"}, {"worker", worker}});
+	events.worker(worker);
 	co_return;
 }
 
@@ -49,6 +49,7 @@ void Farm::drain(const WorkerId& worker, bool draining) {
 	if (!all_guests.count(worker))
 		throw HttpError(404, "there is no worker " + worker);
 	scheduler.drain(worker, draining);
+	events.worker(worker);
 }
 
 Awaitable<std::optional<Task>> Farm::take(WorkerId worker, double wait, std::shared_ptr<Peer> peer) {
@@ -79,7 +80,7 @@ Awaitable<std::optional<Task>> Farm::take(WorkerId worker, double wait, std::sha
 			task.row = lease->strip % spec.strips_per_frame() * spec.strip_rows;
 			task.rows = std::min(spec.strip_rows, spec.height - task.row);
 			task.spec = spec;
-			events.tell({{"event", "out"}, {"job", task.job}, {"strip", lease->strip}, {"worker", worker}});
+			events.strip(task.job, lease->strip, worker);
 			co_return task;
 		}
 		const double left = until - now();
@@ -144,6 +145,7 @@ Awaitable<std::string> Farm::report(LeaseId id, fs::path file, std::string sha25
 	Changes changes;
 	const bool taken = scheduler.complete(id, std::stoull(checked.pixels.substr(0, 16), nullptr, 16), now(), changes);
 	apply(changes);
+	events.strip(lease.job, lease.strip, lease.worker);
 	co_return taken ? "" : "lease " + std::to_string(id) + " has ended";
 }
 
@@ -164,13 +166,15 @@ Awaitable<std::string> Farm::failed(LeaseId id, Failure failure) {
 	Changes changes;
 	scheduler.fail(id, now(), changes);
 	apply(changes);
-	events.tell(
-		{{"event", "failed"}, {"job", lease.job}, {"strip", lease.strip}, {"worker", lease.worker}, {"line", failure.line}});
+	events.strip(lease.job, lease.strip, lease.worker);
+	events.failure({{"job", lease.job}, {"strip", lease.strip}, {"worker", name}, {"line", failure.line}});
 	wake(1);
 	co_return "";
 }
 
 Awaitable<std::string> Farm::give_back(LeaseId id) {
+	if (const Lease* lease = scheduler.lease(id))
+		events.strip(lease->job, lease->strip, lease->worker);
 	const bool known = scheduler.give_back(id);
 	note([id](Database& db) { rows::end_lease(db, id); });
 	wake(1);

@@ -5,6 +5,7 @@
 #include "distribute/http/client.h"
 #include "distribute/http/server.h"
 #include "distribute/server/api.h"
+#include "distribute/server/page_files.h"
 
 #include <boost/asio/signal_set.hpp>
 
@@ -28,6 +29,7 @@ const std::vector<Option> options = {
 	{"--check-every", "N", "one strip in N, and each worker's first, is rendered by two; 0: none", "32"},
 	{"--keep-days", "N", "jobs that have ended are removed after so long", "30"},
 	{"--keep-gb", "N", "and the oldest of them while the spool is larger; 0: whatever it is", "0"},
+	{"--source", "", "writes the source of this program and of povray's changes to stdout, as .tar.gz", ""},
 	{"--help", "", "this", ""},
 };
 
@@ -55,13 +57,14 @@ int serve(const Arguments& arguments) {
 	settings.keep_bytes = 1e9 * static_cast<double>(arguments.number("--keep-gb", 0, 1000000));
 	ServerSettings http;
 	http.header_seconds = static_cast<double>(arguments.number("--idle", 1, 86400));
-	http.tokens = read_tokens(arguments.get("--token-file"));
+	http.door = std::make_shared<Door>(read_tokens(arguments.get("--token-file")));
+	http.sign_in = [] { return sign_in_page(); };
 	http.tls_certificate = arguments.get("--tls-cert");
 	http.tls_key = arguments.get("--tls-key");
 	if (http.tls_certificate.empty() != http.tls_key.empty())
 		throw Error("--tls-cert and --tls-key go together");
 	const std::string& address = arguments.get("--listen");
-	if (http.tokens.empty() && !on_loopback(address))
+	if (!http.door->needs_token() && !on_loopback(address))
 		throw Error("--listen " + address + " is open to others: give a --token-file ('bhfarm token new' makes one)");
 
 	// Strips are unpacked by the thousand: the memory for one serves for the next, rather than going back to the system.
@@ -85,6 +88,8 @@ int serve(const Arguments& arguments) {
 	add_job_routes(router, farm);
 	add_worker_routes(router, farm);
 	add_bundle_routes(router, farm);
+	add_watch_routes(router, farm);
+	add_page_routes(router, *http.door);
 	http.fresh_file = [&farm] { return farm.files().fresh(); };
 	HttpServer server(context, router, http);
 	server.listen(address);
@@ -112,6 +117,10 @@ int main(int argc, char** argv) {
 			std::printf("bhfarm-server [options]\nKeeps jobs and lends their strips to workers. docs/manual.md has more.\n%s",
 				help_lines(options).c_str());
 			return 0;
+		}
+		if (arguments.has("--source")) {
+			const std::string_view source = source_archive();
+			return std::fwrite(source.data(), 1, source.size(), stdout) == source.size() && std::fflush(stdout) == 0 ? 0 : 1;
 		}
 		if (!arguments.rest.empty())
 			throw Error("what is '" + arguments.rest[0] + "'? --help lists the options");

@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: AGPL-3.0-or-later
+# Puts the files of a folder into a C++ source, each with its path, media type and a tag that changes with it.
+#   cmake -D FOLDER=... -D OUT=... -P Embed.cmake
+file(GLOB files ${FOLDER}/*.html ${FOLDER}/*.css ${FOLDER}/*.js ${FOLDER}/*.svg)
+set(types ".html=text/html\; charset=utf-8" ".css=text/css\; charset=utf-8" ".js=text/javascript\; charset=utf-8" ".svg=image/svg+xml")
+set(text "// Made by cmake/Embed.cmake.\n#include \"distribute/server/page_files.h\"\n\nnamespace farm {\n\nconst std::vector<PageFile> page_files = {\n")
+foreach(file ${files})
+	get_filename_component(name ${file} NAME)
+	get_filename_component(suffix ${file} LAST_EXT)
+	foreach(type ${types})
+		if(type MATCHES "^${suffix}=(.*)")
+			set(media ${CMAKE_MATCH_1})
+		endif()
+	endforeach()
+	file(READ ${file} body)
+	file(SHA256 ${file} tag)
+	string(SUBSTRING ${tag} 0 32 tag)
+	string(APPEND text "{\"${name}\", \"${media}\", \"\\\"${tag}\\\"\", R\"____(${body})____\"},\n")
+endforeach()
+string(APPEND text "};\n\n} // namespace farm\n")
+file(WRITE ${OUT} "${text}")

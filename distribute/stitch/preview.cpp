@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "distribute/stitch/preview.h"
+
+#include "distribute/common/error.h"
+
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
+#include <png.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+namespace farm {
+
+using Path = std::filesystem::path;
+
+/// Takes a picture's rows one after the other and sums up those that fall to the same row of the preview.
+class PreviewRows {
+public:
+	PreviewRows(Preview& p, int first) : preview(p), row(first), sums(static_cast<size_t>(4 * p.width)) {}
+	~PreviewRows() { flush(); }
+
+	/// One row: 4 values a pixel, linear, alpha multiplied in, 65535 is white.
+	template <class Value> void add(const Value* values) {
+		const int target = static_cast<int>(std::int64_t{row++} * preview.height / preview.frame_height);
+		if (target != current) {
+			flush();
+			current = target;
+		}
+		++rows;
+		for (int x = 0; x < preview.width; ++x) {
+			const auto from = std::int64_t{x} * preview.frame_width / preview.width;
+			const auto to = std::int64_t{x + 1} * preview.frame_width / preview.width;
+			double part[4] = {};
+			for (auto i = from; i < to; ++i)
+				for (int c = 0; c < 4; ++c)
+					part[c] += static_cast<double>(values[4 * i + c]);
+			for (int c = 0; c < 4; ++c)
+				sums[static_cast<size_t>(4 * x + c)] += part[c] / static_cast<double>(to - from);
+		}
+	}
+
+private:
+	// Two strips may meet within a row of the preview: it is the mean of what has come of it.
+	void flush() {
+		if (rows > 0) {
+			int& before = preview.rows_in[static_cast<size_t>(current)];
+			std::uint16_t* const line = preview.pixels.data() + sums.size() * static_cast<size_t>(current);
+			for (size_t i = 0; i < sums.size(); ++i)
+				line[i] = static_cast<std::uint16_t>(std::lround((line[i] * before + sums[i]) / (before + rows)));
+			before += rows;
+		}
+		std::fill(sums.begin(), sums.end(), 0.0);
+		rows = 0;
+	}
+
+	Preview& preview;
+	int row, current = -1, rows = 0;
+	std::vector<double> sums;
+};
+
+namespace {
+
+Error other_size(const Path& picture) { return Error(picture.string() + " has another size than it should"); }
+
+[[noreturn]] void fail(png_structp png, png_const_charp message) {
+	throw Error(*static_cast<const std::string*>(png_get_error_ptr(png)) + ": " + message);
+}
+void hush(png_structp, png_const_charp) {}
+
+void add_png(PreviewRows& to, const Path& picture, int width, int rows) {
+	const std::string name = picture.string();
+	const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(name.c_str(), "rb"), std::fclose);
+	if (!file)
+		throw system_error("cannot read " + name);
+	struct Reading {
+		explicit Reading(const std::string& file_name)
+			: png(png_create_read_struct(PNG_LIBPNG_VER_STRING, const_cast<std::string*>(&file_name), fail, hush)),
+			  info(png_create_info_struct(png)) {}
+		~Reading() { png_destroy_read_struct(&png, &info, nullptr); }
+		png_structp png;
+		png_infop info;
+	} r(name);
+	png_init_io(r.png, file.get());
+	png_read_info(r.png, r.info);
+	if (png_get_image_width(r.png, r.info) != static_cast<png_uint_32>(width) ||
+		png_get_image_height(r.png, r.info) != static_cast<png_uint_32>(rows) ||
+		png_get_interlace_type(r.png, r.info) != PNG_INTERLACE_NONE)
+		throw other_size(picture);
+	// Whatever the file's gamma: linear, premultiplied, 16 bits in the machine's order.
+	png_set_alpha_mode(r.png, PNG_ALPHA_PREMULTIPLIED, PNG_GAMMA_LINEAR);
+	png_set_expand_16(r.png);
+	png_set_gray_to_rgb(r.png);
+	png_set_add_alpha(r.png, 0xffff, PNG_FILLER_AFTER);
+	png_set_swap(r.png);
+	png_read_update_info(r.png, r.info);
+	if (png_get_rowbytes(r.png, r.info) != 8 * static_cast<size_t>(width))
+		throw Error(name + ": a PNG of this kind is none of povray's");
+	std::vector<std::uint16_t> row(4 * static_cast<size_t>(width));
+	for (int i = 0; i < rows; ++i) {
+		png_read_row(r.png, reinterpret_cast<png_bytep>(row.data()), nullptr);
+		to.add(row.data());
+	}
+}
+
+void add_exr(PreviewRows& to, const Path& picture, int width, int rows) {
+	constexpr int at_once = 16;
+	try {
+		Imf::InputFile in(picture.c_str(), 0);
+		const auto window = in.header().dataWindow();
+		if (window.max.x - window.min.x + 1 != width || window.max.y - window.min.y + 1 != rows)
+			throw other_size(picture);
+		const size_t pitch = 4 * static_cast<size_t>(width);
+		std::vector<float> block(pitch * at_once);
+		for (int done = 0; done < rows; done += at_once) {
+			const int first = window.min.y + done, last = std::min(first + at_once - 1, window.max.y);
+			Imf::FrameBuffer buffer;
+			const char* const names[] = {"R", "G", "B", "A"};
+			for (int c = 0; c < 4; ++c) {
+				// OpenEXR counts from pixel (0, 0) of the frame.
+				char* const base =
+					reinterpret_cast<char*>(block.data() + c) -
+					static_cast<std::ptrdiff_t>(sizeof(float)) *
+						(static_cast<std::ptrdiff_t>(pitch) * first + 4 * static_cast<std::ptrdiff_t>(window.min.x));
+				buffer.insert(names[c], Imf::Slice(Imf::FLOAT, base, 4 * sizeof(float), pitch * sizeof(float), 1, 1, c == 3));
+			}
+			in.setFrameBuffer(buffer);
+			in.readPixels(first, last);
+			for (float& v : block)
+				v = 65535 * (v > 0 ? std::min(v, 1.0F) : 0); // not a number is black
+			for (int i = first; i <= last; ++i)
+				to.add(block.data() + pitch * static_cast<size_t>(i - first));
+		}
+	} catch (const Error&) {
+		throw;
+	} catch (const std::exception& e) {
+		throw Error(picture.string() + ": " + e.what());
+	}
+}
+
+} // namespace
+
+Preview::Preview(int w, int h, int size) : frame_width(w), frame_height(h) {
+	const double shrink = std::min(1.0, size / static_cast<double>(std::max(w, h)));
+	width = std::max(1, static_cast<int>(std::lround(w * shrink)));
+	height = std::max(1, static_cast<int>(std::lround(h * shrink)));
+	pixels.resize(4 * static_cast<size_t>(width) * static_cast<size_t>(height));
+	rows_in.resize(static_cast<size_t>(height));
+}
+
+void Preview::add(Format format, const Path& picture, int row, int rows) {
+	PreviewRows to(*this, row);
+	format == Format::png ? add_png(to, picture, frame_width, rows) : add_exr(to, picture, frame_width, rows);
+}
+
+std::string Preview::png() const {
+	png_image image{};
+	image.version = PNG_IMAGE_VERSION;
+	image.width = static_cast<png_uint_32>(width);
+	image.height = static_cast<png_uint_32>(height);
+	image.format = PNG_FORMAT_LINEAR_RGB_ALPHA;
+	image.flags = PNG_IMAGE_FLAG_FAST;
+	png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
+	std::string packed(size, '\0');
+	if (!png_image_write_to_memory(&image, packed.data(), &size, 1, pixels.data(), 0, nullptr))
+		throw Error(std::string("cannot pack a preview: ") + image.message);
+	packed.resize(size);
+	return packed;
+}
+
+} // namespace farm
