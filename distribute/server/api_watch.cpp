@@ -7,19 +7,26 @@
 namespace farm {
 namespace {
 
-std::string piece(const json& what) { return "data: " + what.dump(-1, ' ', false, json::error_handler_t::replace) + "\n\n"; }
+std::string piece(const std::string& text) {
+	std::string line("data: ");
+	line.append(text).append("\n\n");
+	return line;
+}
+
+std::string everything(const Farm& farm) { return piece(answer(describe_all(farm)).body); }
 
 Awaitable<void> stream_events(Farm& farm, Sink& sink) {
 	Events::Watch watch(farm.news());
-	std::string text = "retry: 2000\n\n" + piece(describe_all(farm));
+	std::string text("retry: 2000\n\n");
+	text += everything(farm);
 	while (co_await sink.write(std::move(text))) {
 		const Events::Text news = co_await watch.next(15);
 		if (watch.missed())
-			text = piece(describe_all(farm));
+			text = everything(farm);
 		else if (news)
-			text = "data: " + *news + "\n\n";
+			text = piece(*news);
 		else // shows that both ends are there
-			text = piece({{"event", "time"}, {"time", wall_time()}});
+			text = piece(answer({{"event", "time"}, {"time", wall_time()}}).body);
 	}
 }
 

@@ -24,7 +24,7 @@ public:
 	~PreviewRows() { flush(); }
 
 	/// One row: 4 values a pixel, linear, alpha multiplied in, 65535 is white.
-	template <class Value> void add(const Value* values) {
+	void add(const float* values) {
 		const int target = static_cast<int>(std::int64_t{row++} * preview.height / preview.frame_height);
 		if (target != current) {
 			flush();
@@ -37,7 +37,7 @@ public:
 			double part[4] = {};
 			for (auto i = from; i < to; ++i)
 				for (int c = 0; c < 4; ++c)
-					part[c] += static_cast<double>(values[4 * i + c]);
+					part[c] += values[4 * i + c];
 			for (int c = 0; c < 4; ++c)
 				sums[static_cast<size_t>(4 * x + c)] += part[c] / static_cast<double>(to - from);
 		}
@@ -71,6 +71,20 @@ Error other_size(const Path& picture) { return Error(picture.string() + " has an
 }
 void hush(png_structp, png_const_charp) {}
 
+/// The light of each 16-bit value, from 0 to 1: of a PNG's gAMA (100,000 times the exponent), or sRGB if that is 0. libpng's own
+/// tables take sRGB for a power law, and make dark skies black.
+std::vector<float> linear(png_fixed_point gamma) {
+	std::vector<float> table(65536);
+	for (size_t i = 0; i < table.size(); ++i) {
+		const double v = static_cast<double>(i) / 65535;
+		const double light = gamma > 0      ? std::pow(v, 100000.0 / gamma)
+							 : v <= 0.04045 ? v / 12.92
+											: std::pow((v + 0.055) / 1.055, 2.4);
+		table[i] = static_cast<float>(light);
+	}
+	return table;
+}
+
 void add_png(PreviewRows& to, const Path& picture, int width, int rows) {
 	const std::string name = picture.string();
 	const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(name.c_str(), "rb"), std::fclose);
@@ -90,8 +104,13 @@ void add_png(PreviewRows& to, const Path& picture, int width, int rows) {
 		png_get_image_height(r.png, r.info) != static_cast<png_uint_32>(rows) ||
 		png_get_interlace_type(r.png, r.info) != PNG_INTERLACE_NONE)
 		throw other_size(picture);
-	// Whatever the file's gamma: linear, premultiplied, 16 bits in the machine's order.
-	png_set_alpha_mode(r.png, PNG_ALPHA_PREMULTIPLIED, PNG_GAMMA_LINEAR);
+	png_fixed_point gamma = 0;
+	if (png_get_valid(r.png, r.info, PNG_INFO_sRGB) || !png_get_gAMA_fixed(r.png, r.info, &gamma))
+		gamma = 0;
+	static const std::vector<float> srgb = linear(0);
+	const std::vector<float> other = gamma > 0 ? linear(gamma) : std::vector<float>();
+	const std::vector<float>& light = gamma > 0 ? other : srgb;
+	// Always 16 bits, in the machine's order, with alpha.
 	png_set_expand_16(r.png);
 	png_set_gray_to_rgb(r.png);
 	png_set_add_alpha(r.png, 0xffff, PNG_FILLER_AFTER);
@@ -100,9 +119,12 @@ void add_png(PreviewRows& to, const Path& picture, int width, int rows) {
 	if (png_get_rowbytes(r.png, r.info) != 8 * static_cast<size_t>(width))
 		throw Error(name + ": a PNG of this kind is none of povray's");
 	std::vector<std::uint16_t> row(4 * static_cast<size_t>(width));
+	std::vector<float> values(row.size());
 	for (int i = 0; i < rows; ++i) {
 		png_read_row(r.png, reinterpret_cast<png_bytep>(row.data()), nullptr);
-		to.add(row.data());
+		for (size_t v = 0; v < row.size(); ++v)
+			values[v] = v % 4 == 3 ? row[v] : light[row[v]] * row[v | 3];
+		to.add(values.data());
 	}
 }
 

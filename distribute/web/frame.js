@@ -10,9 +10,9 @@ export class Frame {
 		byId("frame-picture").append(...blank("div").childNodes);
 		byId("frame-before").onclick = () => this.step(-1);
 		byId("frame-after").onclick = () => this.step(1);
-		this.dialog.addEventListener("keydown", e => {
+		addEventListener("keydown", e => { // not the dialog's: a button that has just been disabled takes the focus with it
 			const by = { ArrowLeft: -1, ArrowRight: 1 }[e.key];
-			if (by)
+			if (by && this.dialog.open)
 				this.step(by);
 		});
 		this.dialog.addEventListener("click", e => {

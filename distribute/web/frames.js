@@ -41,11 +41,13 @@ export class Frames {
 
 	constructor(model, previews, open) {
 		Object.assign(this, { model, previews, open, box: byId("frames"), field: byId("frame-field") });
-		this.box.addEventListener("scroll", () => {
-			if (Math.abs(this.box.scrollTop - (this.went ?? 0)) > 2)
-				this.follow(false);
-			this.draw();
-		});
+		this.box.addEventListener("scroll", () => this.draw());
+		// Who scrolls wants to look elsewhere.
+		for (const kind of ["wheel", "touchmove", "keydown", "pointerdown"])
+			this.box.addEventListener(kind, e => {
+				if (kind === "keydown" ? /^(Arrow|Page|Home|End| )/.test(e.key) : kind !== "pointerdown" || e.target === this.box)
+					this.follow(false);
+			}, { passive: true });
 		new ResizeObserver(() => this.draw()).observe(this.box);
 		byId("follow").onclick = () => {
 			this.follow(!this.following);
@@ -91,11 +93,9 @@ export class Frames {
 		if (first < 0)
 			first = this.model.chosen.frames - 1;
 		const top = Math.floor(first / this.columns) * this.row - this.row;
-		const went = Math.max(0, Math.min(top, this.box.scrollHeight - this.box.clientHeight));
-		if (Math.abs(this.box.scrollTop - went) > 1) {
-			this.box.scrollTop = went;
-			this.went = this.box.scrollTop;
-		}
+		const there = Math.max(0, Math.min(top, this.box.scrollHeight - this.box.clientHeight));
+		if (Math.abs(this.box.scrollTop - there) > 1)
+			this.box.scrollTop = there;
 	}
 
 	draw() {
@@ -103,7 +103,7 @@ export class Frames {
 		if (model.chosen && model.chosen.id !== this.job) {
 			this.job = model.chosen.id;
 			this.follow(true);
-			this.went = box.scrollTop = 0;
+			box.scrollTop = 0;
 		}
 		if (!model.chosen || !model.strips.length || box.clientWidth === 0)
 			return;

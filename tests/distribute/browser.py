@@ -124,13 +124,20 @@ class Browser:
     def dark(self, on):
         self.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark" if on else "light"}])
 
-    def click(self, selector):
-        """With the mouse, where the element is: it must be in sight, and nothing above it."""
-        x, y = self.wait("""(() => { const e = [...document.querySelectorAll(%s)].find(e => e.checkVisibility()); if (!e) return null; e.scrollIntoView({block: 'nearest'});
+    def place(self, selector):
+        """Where the element is: it must be in sight, and nothing above it."""
+        return self.wait("""(() => { const e = [...document.querySelectorAll(%s)].find(e => e.checkVisibility()); if (!e) return null; e.scrollIntoView({block: 'nearest'});
             const r = e.getBoundingClientRect(), p = [r.x + r.width / 2, r.y + r.height / 2], top = document.elementFromPoint(...p);
             return r.width && (top === e || e.contains(top)) ? p : null; })()""" % json.dumps(selector), selector + " to be where it can be clicked")
+
+    def click(self, selector):
+        x, y = self.place(selector)
         for kind in ("mousePressed", "mouseReleased"):
             self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
+
+    def wheel(self, selector, by):
+        x, y = self.place(selector)
+        self.call("Input.dispatchMouseEvent", type="mouseWheel", x=x, y=y, deltaX=0, deltaY=by)
 
     def type(self, text):
         self.call("Input.insertText", text=text)

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: AGPL-3.0-or-later
-"""Pictures of the page in all its states, to look at: page_pictures.py build/release/bin FOLDER. docs/page.png is its light.png."""
+"""Pictures of the page in all its states, to look at: page_pictures.py build/release/bin FOLDER. docs/page.png is one of them."""
 import os
 import shutil
+import subprocess
 import sys
 import time
 
@@ -38,6 +39,7 @@ wait(lambda: open_one.job(number)["frames_done"] >= 10, "ten frames", seconds=60
 browser.run("location.hash = '#job-%d'" % number)
 browser.wait("document.querySelectorAll('.tile img').length > 8")
 shot("light")
+subprocess.run(["ffmpeg", "-v", "error", "-y", "-i", to + "/light.png", "-vf", "split[a][b];[a]palettegen[p];[b][p]paletteuse=dither=none", to + "/page.png"], check=True)
 shot("dark", True)
 browser.click(".tile:nth-child(11)")
 browser.wait("document.querySelector('#frame-picture img')")

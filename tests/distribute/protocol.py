@@ -75,7 +75,9 @@ for line in lines:
         wait(lambda: ask("/v1/jobs/" + variables["J"])[1]["stage"] == "done", "the film")
     done = curl(line)
     if "/v1/events" in line:
-        assert done.returncode == 28 and b"retry" in done.stdout, done # curl's word for the end of its patience
+        assert done.returncode == 28, done # curl's word for the end of its patience
+        everything = json.loads(done.stdout.split(b"data: ")[1])
+        assert everything["event"] == "all" and everything["jobs"][0]["id"] == int(variables["J"]), everything
         continue
     assert done.returncode == 0, "%s\n%s" % (line, done.stderr.decode())
     answers[line] = done.stdout
