@@ -124,6 +124,8 @@ int workers_command(const Words& words) {
 	const auto options = std::vector<Option>{json_option} + server_options;
 	const Arguments a(words, options);
 	help_if_asked(a, "bhfarm workers", options);
+	if (!a.rest.empty())
+		throw Error("what is '" + a.rest[0] + "'? 'bhfarm workers' lists all");
 	const json answer = connect(a).get("/v1/workers");
 	if (a.has("--json")) {
 		std::puts(answer["workers"].dump().c_str());

@@ -154,6 +154,7 @@ int render_command(const Words& words) {
 	fs::permissions(state, fs::perms::owner_all); // the token is nobody else's
 	const FileLock lock(state / "lock", "this very job is being rendered already");
 	write_durably(state / "token", random_hex(32) + "\n");
+	fs::permissions(state / "token", fs::perms::owner_read | fs::perms::owner_write);
 
 	std::signal(SIGINT, interrupt);
 	std::signal(SIGTERM, interrupt);

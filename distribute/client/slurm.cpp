@@ -5,6 +5,7 @@
 #include "distribute/common/files.h"
 #include "distribute/common/process.h"
 #include "distribute/http/client.h"
+#include "distribute/sandbox/limits.h"
 
 #include <nlohmann/json.hpp>
 
@@ -83,6 +84,7 @@ void check_word(const std::string& what, const std::string& word) {
 std::string script_for(const Arguments& a, const Access_to& access, const std::string& token_file) {
 	const long workers = a.number("--workers", 1, 100000), slots = a.number("--slots", 1, 1024),
 			   grace = a.number("--grace", 1, 86400);
+	limits_from(a, static_cast<int>(slots)); // refuses what the worker would
 	std::string script = "#!/bin/bash\n"
 						 "#SBATCH --job-name=bhfarm\n"
 						 "#SBATCH --output=bhfarm-%A_%a.log\n"
@@ -105,6 +107,12 @@ std::string script_for(const Arguments& a, const Access_to& access, const std::s
 		script += " --ca " + quoted(fs::absolute(access.authority).string());
 	if (const std::string& cache = a.get("--cache"); !cache.empty())
 		script += " --cache " + quoted(cache);
+	for (const auto& limit : limit_options)
+		if (a.has(limit.name))
+			script.append(" ")
+				.append(limit.name)
+				.append(limit.value.empty() ? "" : "=")
+				.append(limit.value.empty() ? "" : quoted(a.get(limit.name)));
 	script += " --slots " + std::to_string(slots) + " --grace " + std::to_string(grace) + " --idle-exit " +
 			  std::to_string(a.number("--idle-exit", 0, 1000000));
 	return script + " --name \"${SLURMD_NODENAME:-node}-${SLURM_ARRAY_TASK_ID:-0}\"\n";
@@ -123,7 +131,7 @@ std::string complaint(const std::string& said) {
 } // namespace
 
 int slurm_command(const Words& words) {
-	const auto options = slurm_options + server_options;
+	const auto options = slurm_options + limit_options + server_options;
 	const auto end = std::find(words.begin(), words.end(), "--");
 	const Arguments a({words.begin(), end}, options);
 	help_if_asked(a,

@@ -92,6 +92,15 @@ std::string read_file(const fs::path& file) {
 	return all;
 }
 
+std::string read_secret(const fs::path& file) {
+	std::string text = read_file(file);
+	std::error_code ignored;
+	if ((fs::status(file, ignored).permissions() & fs::perms::others_read) != fs::perms::none &&
+		fs::is_regular_file(file, ignored))
+		say("everybody here can read " + file.string() + "; 'chmod 600' keeps it secret");
+	return text;
+}
+
 ScratchFolder::ScratchFolder(const fs::path& parent) {
 	std::error_code ignored;
 	fs::create_directories(parent, ignored);

@@ -19,6 +19,9 @@ void move_durably(const fs::path& from, const fs::path& to);
 /// The whole content; throws Error.
 std::string read_file(const fs::path& file);
 
+/// Likewise, of a file that is nobody else's business; says so if others can read it.
+std::string read_secret(const fs::path& file);
+
 /// A folder of its own below `parent` (made if need be), removed with all it holds at the end of its life.
 class ScratchFolder {
 public:

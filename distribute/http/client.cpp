@@ -6,8 +6,10 @@
 #include <curl/curl.h>
 #include <nlohmann/json.hpp>
 
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <memory>
 #include <utility>
 
@@ -21,6 +23,7 @@ struct Client::Ask {
 	std::FILE* upload = nullptr;
 	long long upload_size = 0;
 	std::FILE* download = nullptr;
+	std::string place; ///< the download's name
 	double patience = 0;
 	std::string answer;
 	bool json_body = false;
@@ -32,14 +35,18 @@ struct Reply {
 	CURL* curl;
 	std::string* text;
 	std::FILE* file;
+	int error; ///< why the file could not be written
 };
 
 size_t take(char* data, size_t one, size_t count, void* to) {
-	const auto& reply = *static_cast<Reply*>(to);
+	auto& reply = *static_cast<Reply*>(to);
 	long status = 0;
 	curl_easy_getinfo(reply.curl, CURLINFO_RESPONSE_CODE, &status);
-	if (reply.file && status == 200)
-		return std::fwrite(data, one, count, reply.file);
+	if (reply.file && status == 200) {
+		const size_t written = std::fwrite(data, one, count, reply.file);
+		reply.error = written == count ? 0 : errno;
+		return written;
+	}
 	reply.text->append(data, one * count);
 	return one * count;
 }
@@ -93,7 +100,7 @@ json Client::ask(Ask& request) {
 		headers, request.json_body ? "Content-Type: application/json" : "Content-Type: application/octet-stream");
 	headers = curl_slist_append(headers, "Expect:"); // a round trip less
 	char why[CURL_ERROR_SIZE] = "";
-	Reply reply{curl, &request.answer, request.download};
+	Reply reply{curl, &request.answer, request.download, 0};
 	curl_easy_setopt(curl, CURLOPT_URL, url.c_str());
 	curl_easy_setopt(curl, CURLOPT_CUSTOMREQUEST, request.method.c_str());
 	curl_easy_setopt(curl, CURLOPT_HTTPHEADER, headers);
@@ -127,6 +134,10 @@ json Client::ask(Ask& request) {
 	curl_slist_free_all(headers);
 	long status = 0;
 	curl_easy_getinfo(curl, CURLINFO_RESPONSE_CODE, &status);
+	if (code == CURLE_URL_MALFORMAT || code == CURLE_PEER_FAILED_VERIFICATION || code == CURLE_SSL_CACERT_BADFILE)
+		throw Distrusted("no answer from " + access.url + ": " + (*why ? why : curl_easy_strerror(code)));
+	if (reply.error)
+		throw Unreachable("cannot write " + request.place + ": " + std::strerror(reply.error));
 	if (code != CURLE_OK)
 		throw Unreachable("no answer from " + access.url + ": " + (*why ? why : curl_easy_strerror(code)));
 	if (request.download && status == 200)
@@ -153,7 +164,8 @@ json Client::get(const std::string& path) {
 
 json Client::post(const std::string& path, const json& body, double seconds) {
 	Ask a;
-	const std::string text = body.dump();
+	// povray's words may be in any encoding.
+	const std::string text = body.dump(-1, ' ', false, json::error_handler_t::replace);
 	a.method = "POST";
 	a.path = path;
 	a.body = &text;
@@ -201,6 +213,7 @@ void Client::download(const std::string& path, const std::filesystem::path& file
 		a.method = "GET";
 		a.path = path;
 		a.download = out.get();
+		a.place = file.string();
 		ask(a);
 		if (std::fclose(out.release()) != 0)
 			throw system_error("cannot write " + file.string());
@@ -217,12 +230,14 @@ Access_to access_from(const std::string& url, const std::string& token_file, con
 	if (const std::string u = from_environment(url, "BHFARM_SERVER"); !u.empty())
 		access.url = u.find("://") == std::string::npos ? "http://" + u : u;
 	if (const std::string f = from_environment(token_file, "BHFARM_TOKEN_FILE"); !f.empty()) {
-		access.token = read_file(f);
+		access.token = read_secret(f);
 		access.token = access.token.substr(0, access.token.find_first_of("\r\n \t"));
 		if (access.token.empty())
 			throw Error("the token file " + f + " is empty");
 	}
 	access.authority = from_environment(authority, "BHFARM_CA");
+	if (!access.authority.empty())
+		read_file(access.authority); // or what it says of a server would be no help
 	return access;
 }
 

@@ -26,6 +26,11 @@ struct Unreachable : Error {
 	using Error::Error;
 };
 
+/// It could not, and will not be before somebody mends an address or a certificate.
+struct Distrusted : Unreachable {
+	using Unreachable::Unreachable;
+};
+
 /// The server answered, and not with what was asked for.
 struct Refused : Error {
 	Refused(int s, const std::string& what) : Error(what), status(s) {}

@@ -38,7 +38,7 @@ std::vector<std::string> read_tokens(const std::string& given) {
 	std::vector<std::string> tokens;
 	if (file.empty())
 		return tokens;
-	std::istringstream lines(read_file(file));
+	std::istringstream lines(read_secret(file));
 	for (std::string line; std::getline(lines, line);)
 		if (line = line.substr(0, line.find_first_of("\r \t#")); !line.empty())
 			tokens.push_back(line);
@@ -64,6 +64,8 @@ int serve(const Arguments& arguments) {
 	if (http.tls_certificate.empty() != http.tls_key.empty())
 		throw Error("--tls-cert and --tls-key go together");
 	const std::string& address = arguments.get("--listen");
+	const size_t colon = address.rfind(':');
+	whole_number(colon == std::string::npos ? "" : address.substr(colon + 1), "the port in --listen ADDR:PORT", 0, 65535);
 	if (!http.door->needs_token() && !on_loopback(address))
 		throw Error("--listen " + address + " is open to others: give a --token-file ('bhfarm token new' makes one)");
 

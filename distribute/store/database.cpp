@@ -15,9 +15,14 @@ Database::Database(const std::filesystem::path& file) {
 		throw Error("cannot open the ledger " + file.string() + ": " + why);
 	}
 	sqlite3_busy_timeout(handle, 10000);
-	execute("PRAGMA journal_mode=WAL");
-	execute("PRAGMA synchronous=FULL");
-	execute("PRAGMA foreign_keys=ON");
+	try {
+		for (const char* wish : {"PRAGMA journal_mode=WAL", "PRAGMA synchronous=FULL", "PRAGMA foreign_keys=ON"})
+			execute(wish);
+	} catch (const Error&) {
+		const std::string why = sqlite3_errmsg(handle);
+		sqlite3_close(handle);
+		throw Error("cannot use the ledger " + file.string() + ": " + why);
+	}
 }
 
 Database::~Database() { sqlite3_close(handle); }

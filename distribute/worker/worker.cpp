@@ -82,6 +82,8 @@ void Worker::run() {
 			say("at work for " + settings.server.url + " as " + self.name + ", " + std::to_string(self.slots) +
 				(self.slots == 1 ? " slot" : " slots"));
 			break;
+		} catch (const Distrusted&) {
+			throw;
 		} catch (const Unreachable& e) {
 			if (!said)
 				say(std::string(e.what()) + "; trying on");

@@ -15,6 +15,7 @@ import urllib.request
 import zlib
 
 BIN = sys.argv[1]
+os.umask(0o077) # tokens are secret, or there would be a word about it
 WORK = tempfile.mkdtemp(prefix="farm-test-")
 ENV = dict(os.environ, HOME=WORK + "/home")
 for name in ("BHFARM_SERVER", "BHFARM_TOKEN_FILE", "BHFARM_CA", "POVINI", "XDG_STATE_HOME", "XDG_CACHE_HOME"):

@@ -15,9 +15,10 @@ if os.geteuid() != 0 or not all(os.path.exists(d) for d in DAEMONS):
     print("skipped: not root, or no slurmctld, slurmd and munge here")
     sys.exit(77)
 
+os.umask(0o022) # munge wants all to reach its socket
+os.chmod(WORK, 0o711)
 HOST = socket.gethostname().split(".")[0]
 SLURM = WORK + "/slurm"
-os.chmod(WORK, 0o711) # munge wants all to reach its socket
 for folder in ("state", "spool", "munge", "logs"):
     os.makedirs(SLURM + "/" + folder, mode=0o755)
 with open(SLURM + "/munge/key", "wb") as f:
