@@ -3,9 +3,9 @@
 
 #include "distribute/common/error.h"
 
+#include <cerrno>
 #include <cstdlib>
 #include <fcntl.h>
-#include <fstream>
 #include <sys/file.h>
 #include <unistd.h>
 #include <vector>
@@ -23,6 +23,20 @@ void sync_folder(const fs::path& folder) {
 		throw system_error("cannot sync " + folder.string());
 }
 
+/// 0, or errno of what went wrong. `last` is called with the descriptor before it is closed.
+template <class Last> int write_and(Last last, const fs::path& file, std::string_view data) {
+	const int d = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+	if (d < 0)
+		return errno;
+	ssize_t n = 0;
+	while (!data.empty() && (n = ::write(d, data.data(), data.size())) >= 0)
+		data.remove_prefix(static_cast<size_t>(n));
+	int error = n < 0 || last(d) != 0 ? errno : 0;
+	if (::close(d) != 0 && !error)
+		error = errno;
+	return error;
+}
+
 fs::path user_folder(const char* variable, const char* otherwise) {
 	const char* xdg = std::getenv(variable);
 	if (xdg && *xdg == '/')
@@ -33,28 +47,17 @@ fs::path user_folder(const char* variable, const char* otherwise) {
 
 } // namespace
 
+int write_file(const fs::path& file, std::string_view data) {
+	return write_and([](int) { return 0; }, file, data);
+}
+
 void write_durably(const fs::path& file, std::string_view data) {
 	const fs::path part = file.string() + ".part" + std::to_string(::getpid());
-	const int d = ::open(part.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-	if (d < 0)
-		throw system_error("cannot write " + file.string());
-	const char* at = data.data();
-	size_t left = data.size();
-	bool good = true;
-	while (good && left > 0) {
-		const ssize_t n = ::write(d, at, left);
-		good = n >= 0;
-		if (good) {
-			at += n;
-			left -= static_cast<size_t>(n);
-		}
-	}
-	good = good && ::fsync(d) == 0;
-	const Error error = system_error("cannot write " + file.string());
-	::close(d);
-	if (!good || ::rename(part.c_str(), file.c_str()) != 0) {
+	if (const int error = write_and(::fsync, part, data); error || ::rename(part.c_str(), file.c_str()) != 0) {
+		errno = error ? error : errno;
+		const Error why = system_error("cannot write " + file.string());
 		::unlink(part.c_str());
-		throw error;
+		throw why;
 	}
 	sync_folder(file.parent_path());
 }

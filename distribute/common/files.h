@@ -14,6 +14,8 @@ namespace fs = std::filesystem;
 /// Writes beside the file, fsyncs, renames, and fsyncs the folder: after it returns the file survives a power cut. Throws Error,
 /// and leaves nothing behind, if any of that fails.
 void write_durably(const fs::path& file, std::string_view data);
+/// Writes it without more ado; 0, or errno.
+int write_file(const fs::path& file, std::string_view data);
 /// Moves a file that is already written to its place, as durably.
 void move_durably(const fs::path& from, const fs::path& to);
 /// The whole content; throws Error.

@@ -23,7 +23,17 @@ struct Connection {
 
 namespace {
 
-constexpr size_t most_read = 1 << 16; ///< bytes at a time
+constexpr size_t most_read = 1 << 15; ///< bytes at a time
+/// Bodies up to so many bytes go to their files in one piece, as long as all of those together are no more than this.
+constexpr std::uint64_t small_body = 4 << 20, most_in_memory = 64 << 20;
+
+/// Counts something for as long as it lives.
+struct Count {
+	Count(std::uint64_t& s, std::uint64_t n) : sum(s), number(n) { sum += number; }
+	~Count() { sum -= number; }
+	Count(const Count&) = delete;
+	std::uint64_t &sum, number;
+};
 
 auto patience(double seconds) { return std::chrono::milliseconds(static_cast<std::int64_t>(1000 * seconds)); }
 
@@ -153,6 +163,35 @@ template <class Stream> Awaitable<void> HttpServer::serve(Stream& stream, std::s
 		co_await stream.async_read_some(asio::buffer(rest), asio::redirect_error(asio::use_awaitable, error));
 }
 
+template <class Stream, class Header>
+Awaitable<Code> HttpServer::read_body(
+	Stream& stream, Connection& connection, Header& header, const Route& route, Request& request) {
+	Code error;
+	const auto limit = static_cast<std::uint64_t>(route.body_limit);
+	const std::uint64_t length = header.content_length().value_or(limit);
+	const bool to_file = route.body == Body::file;
+	if (to_file)
+		request.file = settings.fresh_file();
+	if (to_file && (length > small_body || in_memory + length > most_in_memory)) {
+		http::request_parser<http::file_body> body(std::move(header));
+		body.body_limit(limit);
+		body.get().body().open(request.file.c_str(), beast::file_mode::write, error);
+		if (error)
+			throw HttpError(507, "cannot write: " + error.message());
+		co_await http::async_read(stream, connection.buffer, body, asio::redirect_error(asio::use_awaitable, error));
+		co_return error;
+	}
+	const Count count(in_memory, to_file ? length : 0);
+	http::request_parser<http::string_body> body(std::move(header));
+	body.body_limit(limit);
+	co_await http::async_read(stream, connection.buffer, body, asio::redirect_error(asio::use_awaitable, error));
+	if (error || !to_file)
+		request.body = std::move(body.get().body());
+	else
+		co_await settings.write_file(request.file, body.get().body());
+	co_return error;
+}
+
 // One request and its answer; false when the connection is to be closed.
 template <class Stream> Awaitable<bool> HttpServer::exchange(Stream& stream, Connection& connection) {
 	auto& lowest = beast::get_lowest_layer(stream);
@@ -190,20 +229,7 @@ template <class Stream> Awaitable<bool> HttpServer::exchange(Stream& stream, Con
 		// Beast reads as much at a time as there is room for. Those that wait keep none.
 		if (route.body_limit > 0)
 			connection.buffer.reserve(std::min<size_t>(header.content_length().value_or(most_read), most_read));
-		if (route.body == Body::file) {
-			request.file = settings.fresh_file();
-			http::request_parser<http::file_body> body(std::move(header));
-			body.body_limit(limit);
-			body.get().body().open(request.file.c_str(), beast::file_mode::write, error);
-			if (error)
-				throw HttpError(507, "cannot write: " + error.message());
-			co_await http::async_read(stream, connection.buffer, body, asio::redirect_error(asio::use_awaitable, error));
-		} else {
-			http::request_parser<http::string_body> body(std::move(header));
-			body.body_limit(limit);
-			co_await http::async_read(stream, connection.buffer, body, asio::redirect_error(asio::use_awaitable, error));
-			request.body = std::move(body.get().body());
-		}
+		error = co_await read_body(stream, connection, header, route, request);
 		if (error == http::error::body_limit)
 			throw HttpError(413, "the body is longer than " + std::to_string(limit) + " bytes");
 		if (error.category() == boost::system::generic_category() || error.category() == boost::system::system_category()) {

@@ -19,9 +19,11 @@ struct ServerSettings {
 	std::function<Response()> sign_in;                 ///< the answer to who asks for / and is not let in
 	std::filesystem::path tls_certificate, tls_key;    ///< PEM; both empty: plain HTTP
 	std::function<std::filesystem::path()> fresh_file; ///< names for bodies that go to files
-	int connections = 30000;                           ///< more are turned away with 503
-	double header_seconds = 60;                        ///< an idle connection is closed after this
-	double body_seconds = 600;                         ///< the most one body may take
+	/// Writes such a body elsewhere than on this thread, which would wait for the disk. Throws HttpError.
+	std::function<Awaitable<void>(const std::filesystem::path& file, const std::string& body)> write_file;
+	int connections = 60000;    ///< more are turned away with 503
+	double header_seconds = 60; ///< an idle connection is closed after this
+	double body_seconds = 600;  ///< the most one body may take
 };
 
 class HttpServer {
@@ -41,6 +43,9 @@ private:
 	template <class Stream> Awaitable<void> serve(Stream& stream, std::string from);
 	template <class Stream> Awaitable<bool> exchange(Stream& stream, struct Connection& connection);
 	Awaitable<void> connection(boost::asio::ip::tcp::socket socket);
+	template <class Stream, class Header>
+	Awaitable<boost::system::error_code> read_body(
+		Stream& stream, Connection& connection, Header& header, const Route& route, Request& request);
 
 	boost::asio::io_context& context;
 	const Router& router;
@@ -48,6 +53,7 @@ private:
 	std::optional<boost::asio::ssl::context> tls;
 	boost::asio::ip::tcp::acceptor acceptor;
 	int open = 0;
+	std::uint64_t in_memory = 0; // bytes of bodies on their way to files
 };
 
 } // namespace farm

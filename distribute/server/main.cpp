@@ -10,6 +10,7 @@
 #include <boost/asio/signal_set.hpp>
 
 #include <cstdio>
+#include <cstring>
 #include <malloc.h>
 #include <sstream>
 #include <sys/resource.h>
@@ -93,6 +94,12 @@ int serve(const Arguments& arguments) {
 	add_watch_routes(router, farm);
 	add_page_routes(router, *http.door);
 	http.fresh_file = [&farm] { return farm.files().fresh(); };
+	http.write_file = [&farm](const fs::path& file, const std::string& body) -> Awaitable<void> {
+		const auto write = [&file, &body] { return write_file(file, body); };
+		const int error = co_await in_pool(farm.io(), farm.threads(), write);
+		if (error)
+			throw HttpError(507, std::string("cannot write: ") + std::strerror(error));
+	};
 	HttpServer server(context, router, http);
 	server.listen(address);
 	write_durably(farm.files().url(), server.url() + "\n");

@@ -24,6 +24,12 @@ Awaitable<int> Line::once(const char* method, const std::string& path, std::stri
 	if (!socket.is_open()) {
 		buffer.clear();
 		const asio::ip::tcp::endpoint place(asio::ip::make_address(set.host), static_cast<unsigned short>(std::stoi(set.port)));
+		// One address has no more than some 28,000 ports for connections to one server.
+		if (place.address().is_loopback() && place.address().is_v4()) {
+			static unsigned count = 0;
+			socket.open(place.protocol());
+			socket.bind({asio::ip::make_address_v4(0x7f000002 + count++ % 16), 0});
+		}
 		co_await socket.async_connect(place, into());
 		if (error)
 			co_return 0;
