@@ -4,11 +4,11 @@ import hashlib
 import http.client
 import json
 import struct
-import subprocess
+import time
 import urllib.parse
 import zlib
 
-from farm import BIN, ENV, WORK, Server, bhfarm, pixels, wait
+from farm import ENV, WORK, Server, bhfarm, pixels, wait
 
 TOKEN = bhfarm("token", "new").stdout.strip()
 with open(WORK + "/token", "w") as f:
@@ -50,8 +50,10 @@ class Stream:
                 return json.loads(line[6:])
 
     def until(self, condition):
+        end = time.monotonic() + 60
         while True:
             piece = self.next()
+            assert time.monotonic() < end, "the stream does not tell"
             if condition(piece):
                 return piece
 
