@@ -15,7 +15,7 @@ function row(f, job) {
 /** Asks again only when something has failed since. */
 export async function drawFailures(model) {
 	const job = model.chosen;
-	const version = job ? `${job.id} ${job.created} ${model.failures}` : "";
+	const version = job ? `${job.id} ${job.created} ${job.stage} ${model.failures}` : "";
 	if (version === shown)
 		return;
 	shown = version;
@@ -31,9 +31,10 @@ export async function drawFailures(model) {
 		return;
 	box.hidden = !list.length;
 	say(byId("failure-count"), plural(list.length, "strip that failed", "strips that failed"));
-	if (box.dataset.job !== String(job?.id))
+	const stage = `${job?.id} ${job?.stage}`;
+	if (box.dataset.stage !== stage)
 		box.open = job?.stage === "failed";
-	box.dataset.job = job?.id;
+	box.dataset.stage = stage;
 	const latest = list.slice(-50).reverse();
 	byId("failure-rows").replaceChildren(...latest.map(f => row(f, job)));
 }

@@ -3,6 +3,7 @@
 // libFuzzer (fuzz.sh) and by fuzz_replay.cpp.
 #include "distribute/common/error.h"
 #include "distribute/common/files.h"
+#include "distribute/http/door.h"
 #include "distribute/http/router.h"
 #include "distribute/protocol/fields.h"
 #include "distribute/protocol/messages.h"
@@ -17,6 +18,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <sstream>
 
 using namespace farm;
 
@@ -114,6 +116,42 @@ void address(const std::string& input) {
 	});
 }
 
+/// A request's headers, a line each; '@' stands for a cookie that opens, '#' for a token that does.
+void door(const std::string& input) {
+	static const std::string token(64, '5');
+	static Door entrance({token});
+	static const std::string cookie = [] {
+		entrance.stands_at(7700, false);
+		const std::string line = entrance.let_in();
+		return line.substr(line.find('=') + 1, 64);
+	}();
+	Request request;
+	request.method = "GET";
+	std::istringstream lines(input);
+	for (std::string line; std::getline(lines, line);) {
+		std::string text;
+		for (const char c : line)
+			text += c == '@' ? cookie : c == '#' ? token : std::string(1, c);
+		if (const size_t colon = text.find(": "); colon != std::string::npos)
+			request.headers[text.substr(0, colon)] = text.substr(colon + 2);
+	}
+	bool in = false;
+	refused_or(input, [&] {
+		entrance.check(request);
+		in = true;
+	});
+	if (in && input.find_first_of("@#") == std::string::npos && input.find(token) == std::string::npos)
+		fail("let in without token or cookie", input);
+	request.method = "POST";
+	refused_or(input, [&] {
+		entrance.check(request);
+		if (!in)
+			fail("a POST comes in where a GET does not", input);
+		if (input.find('#') == std::string::npos && input.find(token) == std::string::npos && !Door::from_own_page(request))
+			fail("a page of another origin comes in", input);
+	});
+}
+
 void words(const std::string& input) {
 	refused_or(
 		input, [&] { read_word(input.substr(0, input.find('\0'))); }, true);
@@ -203,6 +241,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 		break;
 	case 6:
 		picture(input, Format::exr, 32);
+		break;
+	case 7:
+		door(input);
 		break;
 	}
 	return 0;

@@ -96,7 +96,9 @@ std::vector<std::string> good() {
 		{2, "+KFF24 +KI0.5 +L/usr/x +O'out put.png'\r\nPost_Frame_Command=rm \"x\" \nFinal_Frame = 10\n"},
 		{3, png(8, PNG_COLOR_TYPE_RGB)}, {3, png(8, PNG_COLOR_TYPE_RGBA)}, {3, png(8, PNG_COLOR_TYPE_GRAY)},
 		{4, png(16, PNG_COLOR_TYPE_RGB)}, {4, png(16, PNG_COLOR_TYPE_GRAY_ALPHA)}, {5, exr(Imf::HALF, "RGB")},
-		{5, exr(Imf::HALF, "RGBA")}, {6, exr(Imf::FLOAT, "RGB")}, {6, exr(Imf::UINT, "RGB")}};
+		{5, exr(Imf::HALF, "RGBA")}, {6, exr(Imf::FLOAT, "RGB")}, {6, exr(Imf::UINT, "RGB")}, {7, "authorization: Bearer #\n"},
+		{7, "host: lab:7700\ncookie: a=1; bhfarm-7700=@; b=2\norigin: http://lab:7700\n"},
+		{7, "host: lab\ncookie: bhfarm-7700=@\nsec-fetch-site: same-origin\n"}};
 	std::vector<std::string> all;
 	for (const auto& [kind, text] : inputs)
 		all.push_back(std::string(1, kind) + text);

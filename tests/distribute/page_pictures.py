@@ -18,10 +18,10 @@ open_one = Server("--check-every", "0")
 browser = Browser(1280, 900)
 
 
-def shot(name, dark=False):
+def shot(name, dark=False, whole=False):
     browser.dark(dark)
     time.sleep(0.6)
-    browser.picture("%s/%s.png" % (to, name))
+    browser.picture("%s/%s.png" % (to, name), whole)
 
 
 browser.go(open_one.url + "/")
@@ -60,7 +60,8 @@ bhfarm("cancel", str(number), server=open_one)
 browser.run("location.hash = '#job-%d'" % (number - 1))
 browser.wait("document.getElementById('stage').textContent === 'failed'", seconds=120)
 browser.wait("document.querySelector('#failure-rows li')")
-shot("failed")
+browser.run("document.querySelector('#failure-rows details').open = true")
+shot("failed", whole=True)
 shot("failed-dark", True)
 browser.run("location.hash = '#job-%d'" % first)
 time.sleep(1)
