@@ -231,8 +231,11 @@ int source_command(const Words& words) {
 		throw Error("what is '" + a.rest[0] + "'? The source goes to stdout");
 	if (::isatty(1))
 		throw Error("the source is a .tar.gz: send it to a file, bhfarm source >povray-blackhole.tar.gz");
-	if (a.get("--server").empty() && !std::getenv("BHFARM_SERVER"))
-		return run({{(program_folder() / "bhfarm-server").string(), "--source"}, {}, {}, {}, 0});
+	if (a.get("--server").empty() && !std::getenv("BHFARM_SERVER")) {
+		Command beside;
+		beside.words = {(program_folder() / "bhfarm-server").string(), "--source"};
+		return run(beside);
+	}
 	const ScratchFolder scratch(fs::temp_directory_path());
 	connect(a).download("/source", scratch.path() / "source");
 	const std::string source = read_file(scratch.path() / "source");

@@ -66,7 +66,7 @@ void add_page_routes(Router& router, Door& door) {
 	static std::string index(page_file("index.html").body), tag(page_file("index.html").etag);
 	if (door.needs_token()) {
 		put_in(index, " hidden>Sign out", ">Sign out");
-		tag.insert(1, "t");
+		tag = std::string("\"signed-in-").append(tag, 1);
 	}
 	router.add("GET", "/", [](Request& r) -> Awaitable<Response> {
 		co_return page(r, {"index.html", page_file("index.html").type, tag, index});
