@@ -36,11 +36,13 @@ constexpr double start_seconds = 0.05;
 
 /// At the job's end slots wait for the last strips, half of one each, but for the one that renders it; and each strip is parsed
 /// anew. The length for which both cost the same is the best: s with (cost/s) = (1 - 1/slots)/2 * s/share. Never so short that
-/// parsing is above a twentieth of it; half a minute at most, that there is something to see and little to lose.
+/// parsing is above a twentieth of it; half a minute at most, that there is something to see and little to lose. Radiosity's
+/// pretrace is done anew on each machine.
 double good_seconds(const Gathered& files, int frames, int slots) {
-	constexpr double most = 30;
+	const double most = std::max(30.0, 20 * files.light_seconds),
+				 cost = files.parse_seconds + start_seconds + files.light_seconds;
 	const double share = files.frame_seconds * frames / slots, waits = 0.5 * (1 - 1.0 / slots);
-	const double best = slots > 1 ? std::sqrt((files.parse_seconds + start_seconds) * share / waits) : most;
+	const double best = slots > 1 ? std::sqrt(cost * share / waits) : most;
 	return std::max(20 * files.parse_seconds, std::min(most, best));
 }
 

@@ -49,17 +49,32 @@ std::string flat(const std::string& text) {
 
 double since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
+/// 1 would mean all of them.
+std::string one_pixel(const JobSpec& spec, int frame) {
+	std::string ini = povray_ini(spec, frame) + "Antialias=Off\n";
+	if (spec.height > 1)
+		ini += "Start_Row=" + std::to_string(spec.height) + "\n";
+	if (spec.width > 1)
+		ini += "Start_Column=" + std::to_string(spec.width) + "\n";
+	return ini;
+}
+
+/// How long it takes beyond parsing; stopped after `patience` seconds of that.
+double timed(const Command& command, double parse_seconds, double patience) {
+	const auto start = Clock::now();
+	Process process(command);
+	if (!process.over(parse_seconds + patience))
+		process.signal(SIGKILL);
+	process.over(-1);
+	return std::max(0.0, since(start) - parse_seconds);
+}
+
 } // namespace
 
 Parsed parse(const SettledScene& scene, int frame, const Trier& trier) {
 	const ScratchFolder scratch(fs::temp_directory_path());
 	const fs::path list = scratch.path() / "reads";
-	std::string ini = povray_ini(scene.spec, frame) + "Antialias=Off\nQuality=0\n";
-	// One pixel. 1 would mean all of them.
-	if (scene.spec.height > 1)
-		ini += "Start_Row=" + std::to_string(scene.spec.height) + "\n";
-	if (scene.spec.width > 1)
-		ini += "Start_Column=" + std::to_string(scene.spec.width) + "\n";
+	const std::string ini = one_pixel(scene.spec, frame) + "Quality=0\n";
 	const Command command =
 		scene_command(scene, ini, trier, scratch.path(), {{"LD_PRELOAD", reads_library()}, {"BHFARM_READS", list}});
 	const auto start = Clock::now();
@@ -82,6 +97,11 @@ Parsed parse(const SettledScene& scene, int frame, const Trier& trier) {
 	return parsed;
 }
 
+double start_time(const SettledScene& scene, int frame, const Trier& trier, double parse_seconds, double patience) {
+	const ScratchFolder scratch(fs::temp_directory_path());
+	return timed(scene_command(scene, one_pixel(scene.spec, frame), trier, scratch.path()), parse_seconds, patience);
+}
+
 double frame_time(const SettledScene& scene, int frame, const Trier& trier, double parse_seconds, double patience) {
 	const ScratchFolder scratch(fs::temp_directory_path());
 	SettledScene small = scene;
@@ -89,12 +109,7 @@ double frame_time(const SettledScene& scene, int frame, const Trier& trier, doub
 	small.spec.width = std::max(1, scene.spec.width / smaller);
 	small.spec.height = std::max(1, scene.spec.height / smaller);
 	const double pixels = double(scene.spec.width) * scene.spec.height / (double(small.spec.width) * small.spec.height);
-	const auto start = Clock::now();
-	Process process(scene_command(small, povray_ini(small.spec, frame), trier, scratch.path()));
-	if (!process.over(parse_seconds + patience))
-		process.signal(SIGKILL);
-	process.over(-1);
-	return std::max(0.0, since(start) - parse_seconds) * pixels;
+	return timed(scene_command(small, povray_ini(small.spec, frame), trier, scratch.path()), parse_seconds, patience) * pixels;
 }
 
 } // namespace farm

@@ -28,6 +28,10 @@ struct Trier {
 /// parse.
 Parsed parse(const SettledScene& scene, int frame, const Trier& trier);
 
+/// What it takes before the first pixel, without parsing: photons, and radiosity's pretrace of the whole frame. Given up after
+/// `patience` seconds. Seconds.
+double start_time(const SettledScene& scene, int frame, const Trier& trier, double parse_seconds, double patience);
+
 /// What one core needs for a frame, without parsing: from a picture of an eighth of the width and height, which is given up after
 /// `patience` seconds (it then needs at least what comes of those). Seconds.
 double frame_time(const SettledScene& scene, int frame, const Trier& trier, double parse_seconds, double patience);

@@ -102,6 +102,7 @@ Gathered gather(SettledScene& scene, const Trier& trier, const std::vector<std::
 
 	std::map<std::string, fs::path> files; // by the name asked for
 	size_t above = 0;
+	bool radiosity = false;
 	for (const auto& name : reads)
 		// What has no folder the scene has just written itself.
 		if (fs::path(name).is_absolute() && !of_the_system(name) && fs::is_regular_file(name))
@@ -122,14 +123,16 @@ Gathered gather(SettledScene& scene, const Trier& trier, const std::vector<std::
 		const std::string hash = sha256_file(path);
 		result.bundle.files.push_back({inner, hash, static_cast<std::int64_t>(fs::file_size(path))});
 		result.sources[hash] = path;
-		if (spec.whole_because.empty() && has_radiosity(path))
-			spec.whole_because = "radiosity looks at the whole frame first (" + path.filename().string() + ")";
+		radiosity = radiosity || has_radiosity(path);
 	}
 	std::sort(
 		result.bundle.files.begin(), result.bundle.files.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
 	spec.bundle = result.bundle.id();
+	constexpr double patience = 10;
+	if (spec.whole_because.empty() && radiosity)
+		result.light_seconds = start_time(scene, spec.frame(count / 2), trier, result.parse_seconds, patience);
 	if (spec.whole_because.empty())
-		result.frame_seconds = frame_time(scene, spec.frame(count / 2), trier, result.parse_seconds, 10);
+		result.frame_seconds = frame_time(scene, spec.frame(count / 2), trier, result.parse_seconds, patience);
 	// The same checks as the server's, before anything is sent.
 	json(result.bundle).get<Bundle>();
 	return result;

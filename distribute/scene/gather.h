@@ -13,6 +13,7 @@ struct Gathered {
 	Bundle bundle;
 	std::map<std::string, std::filesystem::path> sources; ///< where each file of the bundle is here, by its SHA-256
 	double parse_seconds = 0;                             ///< the longest parse
+	double light_seconds = 0;                             ///< radiosity's pretrace, of the middle frame
 	double frame_seconds = 0; ///< what one core may need for a frame: the middle one's, from a small picture of it
 };
 

@@ -54,6 +54,7 @@ int work(const Arguments& arguments) {
 	settings.when_idle = arguments.has("--when-idle");
 	settings.cache = arguments.get("--cache").empty() ? cache_folder() : fs::path(arguments.get("--cache"));
 	settings.scratch = fs::temp_directory_path();
+	settings.renderer.light = std::make_shared<LightStore>(settings.scratch);
 	settings.renderer.povray = find_povray(arguments.get("--povray"));
 	settings.renderer.limits = limits_from(arguments, settings.slots);
 	if (!arguments.has("--no-sandbox"))

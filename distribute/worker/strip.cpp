@@ -44,7 +44,13 @@ Rendered render_strip(const Renderer& renderer, const Task& task, const fs::path
 	const fs::path out = scratch / "out", here = scratch / "here", ini = scratch / "strip.ini", log = scratch / "log";
 	fs::create_directory(out);
 	fs::copy(folder, here, fs::copy_options::directories_only | fs::copy_options::recursive);
-	write_durably(ini, scene_in(folder) + strip_ini(task, out / ("whole" + task.spec.suffix())));
+	std::string lines = scene_in(folder) + strip_ini(task, out / ("whole" + task.spec.suffix()));
+	const bool share = renderer.light && task.rows < task.spec.height,
+			   known = share && renderer.light->fetch(task, scratch / "light");
+	if (share)
+		lines += "Radiosity_File_Name=\"" + ((known ? scratch : out) / "light").string() + "\"\n" +
+				 (known ? "Radiosity_From_File=On\n" : "Radiosity_To_File=On\n");
+	write_durably(ini, lines);
 	Command command = povray_command(renderer.povray, ini, here);
 	command.folder = here;
 	command.log = log;
@@ -70,7 +76,12 @@ Rendered render_strip(const Renderer& renderer, const Task& task, const fs::path
 	if (limit.empty())
 		limit = overseer.complaint(process.code(), output);
 	result.not_started = limit.empty() && process.code() != 0 && did_not_start(output);
-	if (limit.empty() && process.code() == 0)
+	const bool good = limit.empty() && process.code() == 0;
+	if (share && good && !known)
+		renderer.light->keep(task, out / "light");
+	else if (known && !good)
+		renderer.light->forget(task);
+	if (good)
 		result.picture = picture_in(out, task.spec.suffix());
 	result.failure = {tail(limit.empty() ? error_line(output, process.code()) : limit, 1900),
 		tail(output, static_cast<size_t>(limits::log_bytes) / 2)};

@@ -5,8 +5,10 @@
 
 #include "distribute/protocol/messages.h"
 #include "distribute/sandbox/sandbox.h"
+#include "distribute/worker/light.h"
 
 #include <functional>
+#include <memory>
 
 namespace farm {
 
@@ -16,6 +18,7 @@ struct Renderer {
 	Sandbox sandbox;
 	Limits limits;
 	int nice = 19;
+	std::shared_ptr<LightStore> light; ///< for frames with radiosity; may be null
 };
 
 struct Rendered {

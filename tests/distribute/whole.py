@@ -36,7 +36,7 @@ def compare(name, text, words=(), said="", options=(), exr=False):
 
 compare("chance", HEAD % "" + CHANCE, ["+A"], options=["--strips", "7"])
 compare("uneven", HEAD % "" + CHANCE, ["+A", "+AM2"], options=["--strips", "40"])
-compare("radiosity", HEAD % "ambient_light 0 radiosity { count 20 }" + RADIOSITY, said="rendered whole: radiosity")
+compare("radiosity", HEAD % "ambient_light 0 radiosity { count 20 }" + RADIOSITY, options=["--strips", "4"])
 compare("dither", HEAD % "" + CHANCE, ["+TH", "Bits_Per_Color=8"], said="rendered whole: dither")
 compare("isosurface", HEAD % "" + CHANCE + "isosurface { function { x*x + y*y + z*z - 4 } max_gradient 1 evaluate 1, 1.2, 0.99 contained_by { sphere { 0, 3 } } translate <-4, 0, 2> "
         "pigment { Yellow } }\n", said="rendered whole: an isosurface")
