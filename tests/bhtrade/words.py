@@ -3,9 +3,11 @@
 """What bhtrade makes of its words, good and bad: words.py BHTRADE POVRAY"""
 import json
 import os
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 
 ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), "..", ".."))
 sys.path.insert(0, ROOT + "/tests/overlay")
@@ -66,4 +68,23 @@ film = json.loads(bhtrade("film.ini", "--json", "--seconds", "1000").stdout)
 expect((film["frames"], film["width"]) == (9, 40) and film["recommended"]["seconds"] > 4.5 * film["before"] > 0, film)
 two = json.loads(bhtrade("two.pov", "+W40", "+H30", "--json").stdout)
 expect(len(two["holes"]) == 2 and all(s["effect_radius"] is None for s in two["settings"]) and two["recommended"], two)
+
+# Whatever ends it, the povray that it runs ends too, and nothing is left behind; a reader that has enough is no error of ours.
+scratch = tempfile.TemporaryDirectory()
+for end in (signal.SIGTERM, signal.SIGHUP, signal.SIGINT):
+	running = subprocess.Popen([BHTRADE, "scene.pov", "+W2000", "+H2000"], cwd=folder.name, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+		env={**os.environ, "HOME": folder.name, "TMPDIR": scratch.name})
+	children, until = [], time.monotonic() + 60
+	while not children and running.poll() is None and time.monotonic() < until:
+		with open(f"/proc/{running.pid}/task/{running.pid}/children") as file:
+			children = file.read().split()
+		time.sleep(0.01)
+	running.send_signal(end)
+	said = running.communicate()
+	expect(running.returncode == 128 + end and said == ("", ""), end, running.returncode, said)
+	expect(children and not os.path.exists(f"/proc/{children[0]}"), end, "left a povray running:", children)
+	expect(os.listdir(scratch.name) == [], end, "left behind:", os.listdir(scratch.name))
+enough = subprocess.Popen([BHTRADE, "--help"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+enough.stdout.close()
+expect(enough.stderr.read() == "" and enough.wait() == 141, "a closed pipe:", enough.returncode)
 sys.exit(povray.failures > 0)

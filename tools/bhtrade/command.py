@@ -20,6 +20,7 @@ What is blurred (focal blur, antialiasing, media) is judged by the ray through e
 Exit codes: 0 a setting is recommended; 1 povray could not render the scene, or there is no hole in it; 2 wrong words; 3 no
 setting keeps the goal."""
 import os
+import signal
 import sys
 
 import runs
@@ -34,8 +35,34 @@ def progress(line):
 		sys.stderr.flush()
 
 
+class Stopped(BaseException):
+	"""A signal that would end us at once: povray, and what it writes, must go first."""
+
+
+def stop(number, _):
+	raise Stopped(number)
+
+
 def main(argv, povray, defaults):
 	"""povray: the binary; defaults: words for it before the user's."""
+	for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+		if signal.getsignal(number) != signal.SIG_IGN: # as nohup sets it
+			signal.signal(number, stop)
+	try:
+		code = answer(argv, povray, defaults)
+		sys.stdout.flush()
+		return code
+	except BrokenPipeError:
+		# Who read us has enough; what is left must not fail anew at the end.
+		os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+		return 128 + signal.SIGPIPE
+	except Stopped as stopped:
+		progress("")
+		return 128 + stopped.args[0]
+
+
+def answer(argv, povray, defaults):
+	"""Does what is asked; returns the exit code."""
 	if not argv or argv[0] in ("-h", "--help"):
 		print(__doc__)
 		return 0 if argv else 2
@@ -63,6 +90,3 @@ def main(argv, povray, defaults):
 		progress("")
 		print(f"bhtrade: {wrong}", file=sys.stderr)
 		return 1
-	except KeyboardInterrupt:
-		progress("")
-		return 130

@@ -19,7 +19,7 @@ class Blackhole : public ObjectBase
 
 		VECTOR Center;
 		DBL Radius;        ///< Schwarzschild radius, scene units
-		DBL Effect_Radius; ///< scene units; 0: the default, a thousand Radius
+		DBL Effect_Radius; ///< scene units; 0: the default, ten thousand Radius
 		DBL Tolerance;     ///< radians
 		blackhole::Method Method;
 		Camera_Frame Camera;
