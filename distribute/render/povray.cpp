@@ -14,6 +14,23 @@ namespace {
 /// What makes a strip's pixels those of the whole frame, whatever the cuts; and a slot a core.
 const char* const same_pixels = "Reproducible=On\nWork_Threads=1\n";
 
+/// The lines as they were before POV-Ray broke them at 80 columns: one that goes on starts with a blank, or follows a full one.
+std::vector<std::string> unbroken(const std::string& log) {
+	constexpr size_t columns = 80, most = 4000; // what is longer is no message
+	std::istringstream lines(log);
+	std::vector<std::string> whole;
+	size_t last = 0;
+	for (std::string line; std::getline(lines, line);) {
+		const bool goes_on = !whole.empty() && (last == columns || (!line.empty() && line[0] == ' '));
+		last = line.size();
+		if (goes_on && whole.back().size() < most)
+			whole.back() += line;
+		else if (!goes_on)
+			whole.push_back(line);
+	}
+	return whole;
+}
+
 } // namespace
 
 std::string povray_ini(const JobSpec& spec, int frame) {
@@ -51,27 +68,22 @@ Command povray_command(const std::filesystem::path& povray, const std::filesyste
 	return command;
 }
 
-std::string error_line(const std::string& log, int code) {
-	// A message is broken at 80 columns; the lines that go on start with a space. "Possible Parse Error" only announces the real
-	// one.
-	std::istringstream lines(log);
+std::string error_line(const std::string& log, int code, const std::filesystem::path& folder) {
 	std::string found, fatal;
-	bool inside = false;
-	for (std::string line; std::getline(lines, line) && found.size() < 1000;) {
-		if (inside && !line.empty() && line[0] == ' ') {
-			found += line;
-			continue;
-		}
-		inside = false;
-		if (found.empty() && line.find("rror:") != std::string::npos && line.find("Possible Parse Error:") == std::string::npos) {
-			inside = true;
-			found = line;
-		} else if (line.rfind("Fatal error", 0) == 0 || line.rfind("Failed to ", 0) == 0) {
-			fatal = line;
-		}
+	for (const std::string& line : unbroken(log)) {
+		// "Possible Parse Error" only announces the real one.
+		const bool error = line.find("rror:") != std::string::npos && line.find("Possible Parse Error:") == std::string::npos;
+		if (found.empty() && error)
+			found = line.substr(0, 2000);
+		else if (line.rfind("Fatal error", 0) == 0 || line.rfind("Failed to ", 0) == 0)
+			fatal = line.substr(0, 2000);
 	}
 	if (found.empty())
 		found = fatal;
+	// The scene's own name for a file, not ours.
+	const std::string front = (folder / "").string();
+	for (size_t at = 0; !folder.empty() && (at = found.find(front, at)) != std::string::npos;)
+		found.erase(at, front.size());
 	std::string tidy;
 	for (const char c : found)
 		if (c != ' ' || (!tidy.empty() && tidy.back() != ' '))

@@ -23,8 +23,9 @@ std::string scene_in(const std::filesystem::path& folder);
 /// temporary files go to `home` too.
 Command povray_command(const std::filesystem::path& povray, const std::filesystem::path& ini, const std::filesystem::path& home);
 
-/// POV-Ray's error message as one line, from what it printed; the exit code's meaning where it said nothing.
-std::string error_line(const std::string& log, int code);
+/// POV-Ray's error message as one line, from what it printed; the exit code's meaning where it said nothing. Files below
+/// `folder` are named as they are in there.
+std::string error_line(const std::string& log, int code, const std::filesystem::path& folder = {});
 
 /// Whether povray gave up before it began, because its threads took longer to start than it waits on a busy machine: to be tried
 /// again.

@@ -82,7 +82,7 @@ Parsed parse(const SettledScene& scene, int frame, const Trier& trier) {
 	Parsed parsed;
 	parsed.seconds = since(start);
 	if (code != 0) {
-		std::string why = error_line(log, code);
+		std::string why = error_line(log, code, scene.scene.parent_path());
 		// POV-Ray does not say which it did not like.
 		if (why.rfind("Failed to parse", 0) == 0)
 			for (const auto& option : scene.spec.options)

@@ -83,7 +83,7 @@ Rendered render_strip(const Renderer& renderer, const Task& task, const fs::path
 		renderer.light->forget(task);
 	if (good)
 		result.picture = picture_in(out, task.spec.suffix());
-	result.failure = {tail(limit.empty() ? error_line(output, process.code()) : limit, 1900),
+	result.failure = {tail(limit.empty() ? error_line(output, process.code(), folder) : limit, 1900),
 		tail(output, static_cast<size_t>(limits::log_bytes) / 2)};
 	return result;
 }

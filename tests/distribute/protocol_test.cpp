@@ -209,6 +209,11 @@ TEST(Povray, ErrorsAsOneLine) {
 				   "parser: Cannot parse input.\nRender failed\n",
 			1),
 		"File 'a.pov' line 2: Parse Error: Cannot open include file nosuch.inc.");
+	const std::string folder = "/a/folder/" + std::string(60, 'x'); // broken where the line is full
+	EXPECT_EQ(error_line("File '" + folder +
+							 "/sub\n/b.inc' line 2: Parse Error: Cannot open user file x\n (read).\nFatal error in parser\n",
+				  1, folder),
+		"File 'sub/b.inc' line 2: Parse Error: Cannot open user file x (read).");
 	EXPECT_EQ(error_line("", 137), "povray was ended by signal 9 (out of memory, perhaps)");
 	EXPECT_NE(error_line("", 0), "");
 }
