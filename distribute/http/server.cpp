@@ -35,6 +35,8 @@ struct Count {
 	std::uint64_t &sum, number;
 };
 
+constexpr std::uint32_t longest_header = 16 << 10;
+
 auto patience(double seconds) { return std::chrono::milliseconds(static_cast<std::int64_t>(1000 * seconds)); }
 
 /// Looks out for the end of a connection while nothing is read from it.
@@ -197,10 +199,19 @@ template <class Stream> Awaitable<bool> HttpServer::exchange(Stream& stream, Con
 	auto& lowest = beast::get_lowest_layer(stream);
 	Code error;
 	http::request_parser<http::empty_body> header;
-	header.header_limit(16 << 10);
+	header.header_limit(longest_header);
 	header.body_limit(std::numeric_limits<std::uint64_t>::max()); // the route's own follows
 	lowest.expires_after(patience(settings.header_seconds));
 	co_await http::async_read_header(stream, connection.buffer, header, asio::redirect_error(asio::use_awaitable, error));
+	if (error.category() == http::make_error_code(http::error::bad_target).category() && error != http::error::end_of_stream &&
+		error != http::error::partial_message) {
+		connection.unread = true;
+		Response refusal = error == http::error::header_limit
+							   ? error_response(431, "the headers are longer than " + std::to_string(longest_header) + " bytes")
+							   : error_response(400, "that is no HTTP request: " + error.message());
+		lowest.expires_after(patience(settings.body_seconds));
+		co_return co_await send(stream, refusal, 11, false, false);
+	}
 	if (error)
 		co_return false;
 
