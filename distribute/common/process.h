@@ -19,8 +19,8 @@ struct Command {
 	std::map<std::string, std::string> environment; ///< added to this program's own
 	std::filesystem::path log;                      ///< its stdout and stderr; empty: this program's own
 	int nice = 0;
-	std::map<int, std::uint64_t> limits;         ///< RLIMIT_... and the value, in the kernel's unit
-	std::map<int, std::filesystem::path> opened; ///< descriptors, from 3 on, and the files it reads from them
+	std::map<int, std::uint64_t> limits = {};         ///< RLIMIT_... and the value, in the kernel's unit
+	std::map<int, std::filesystem::path> opened = {}; ///< descriptors, from 3 on, and the files it reads from them
 };
 
 /// A running program; killed, with its group, if this ends first.

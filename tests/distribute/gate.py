@@ -8,6 +8,7 @@ import os
 import re
 import socket
 import time
+import urllib.parse
 
 from farm import WORK, Server, bhfarm, wait
 
@@ -72,8 +73,8 @@ for name in glob.glob(root + "**/*.cpp", recursive=True):
     added += len(re.findall(r"\b\w*[rR]outer\w*(?:\.|->)add\(", text))
     routes += re.findall(r'\b\w*[rR]outer\w*(?:\.|->)add\(\s*"([A-Z]+)",\s*"([^"]+)"', text)
 assert added == len(routes) >= 27, "%d routes are added, %d could be read" % (added, len(routes))
-FREE = {("GET", "/health")}
-# A page may say how to sign in, and be 401 all the same.
+# The door itself asks for the token in its own way.
+FREE = {("GET", "/health"), ("POST", "/sign-in")}
 flipped = TOKEN[:-1] + ("0" if TOKEN[-1] != "0" else "1")
 wrong = [None, "", " ", "x", TOKEN[:-1], TOKEN + "0", TOKEN.upper(), flipped, " " + TOKEN, TOKEN + " x", TOKEN + "\t" + TOKEN, TOKEN + "," + TOKEN, "Bearer " + TOKEN, "*", "null", "\xff" * 64,
          "0" * 64, TOKEN[1:], TOKEN * 2]
@@ -87,6 +88,7 @@ for method, pattern in routes:
             assert "\n" not in error, error
         else:
             open_ones.add((method, pattern))
+            assert status == 403 or pattern == "/health", (method, pattern, status)
     status = talk(request("HEAD" if method == "GET" else method, path, "Connection: close", token=None))[0]
     assert status == 401 or (method, pattern) in FREE, (method, path, status)
 assert open_ones == FREE, open_ones
@@ -95,6 +97,15 @@ for token in wrong:
 for line in ("Authorization: bearer " + TOKEN, "Authorization: Basic " + TOKEN, "Authorization: " + TOKEN, "Authorization:Bearer" + TOKEN, "X-Authorization: Bearer " + TOKEN,
              "Authorization: Bearer  " + TOKEN):
     assert talk(request("GET", "/v1/jobs", line, "Connection: close", token=None))[0] == 401, line
+for token in wrong:
+    if token is None or token.strip() == TOKEN: # who pastes a token may paste the blank beside it
+        continue
+    body = "token=" + urllib.parse.quote(token.encode("latin-1"))
+    status, error, _ = talk(request("POST", "/sign-in", "Origin: http://x", "Connection: close", body=body.encode(), token=None))
+    assert status == 401 and not error, (token, status)
+for name in ("bhfarm", "bhfarm-%d" % server.port, "__Host-bhfarm-%d" % server.port):
+    for value in ("", TOKEN, "0" * 64, "*"):
+        assert talk(request("GET", "/v1/jobs", "Cookie: %s=%s" % (name, value), "Connection: close", token=None))[0] == 401, (name, value)
 for path in ("/v1/jobs?token=" + TOKEN, "/v1//jobs", "//v1/jobs", "/V1/jobs", "/v1/jobs/", "/health/../v1/jobs", "/health/%2e%2e/v1/jobs", "/v1/jobs%00", "/health?x=/v1/jobs"):
     status, error, _ = talk(request("GET", path, "Connection: close", token=None))
     assert status in (400, 401, 404) or path.startswith("/health?"), (path, status)
