@@ -14,7 +14,7 @@ if ! command -v clang++ >/dev/null || ! echo 'extern "C" int LLVMFuzzerTestOneIn
 	echo "fuzz: skipped: no clang++ with libFuzzer here (Debian: clang and libclang-rt-dev)"
 	exit 77
 fi
-sources=(distribute/common/{error,files,hash}.cpp distribute/protocol/*.cpp distribute/http/router.cpp distribute/scene/{ini,switches}.cpp
+sources=(distribute/common/{error,files,hash}.cpp distribute/protocol/*.cpp distribute/http/{door,router}.cpp distribute/scene/{ini,switches}.cpp
 	distribute/stitch/{exr,picture,png,png_filter,png_join}.cpp tests/distribute/fuzz.cpp)
 if [ ! -x "$fuzz" ] || [ -n "$(find distribute tests/distribute -newer "$fuzz" -name '*.[ch]*')" ]; then
 	# Clang 14 has C++20's coroutines, which Boost 1.74 does not know of.
