@@ -48,7 +48,11 @@ class Times:
 			raise Failed("povray's statistics have no trace time; is this our povray?")
 		self.pixels = float(re.search(r"Pixels:\s+(\d+)", text)[1])
 		# Antialiasing looks at a block's neighbours above and to the left too; in a whole picture blocks are 32 pixels wide.
-		self.share = (33 / 32) ** 2 if re.search(r"Antialiasing\.+On", text) else 1.0
+		smooth = re.search(r"Antialiasing\.+On +\(Method (\d)", text)
+		self.share = (33 / 32) ** 2 if smooth else 1.0
+		# Those neighbours are looked at once only: what method 1 adds to a pixel is not theirs. (Method 2 shares rays among pixels.)
+		more = re.search(r"Samples:\s+(\d+)", text)
+		self.added = float(more[1]) if smooth and smooth[1] == "1" and more else None
 		m = re.search(r"Image Resolution (\d+) x (\d+)", text)
 		self.width, self.height = int(m[1]), int(m[2])
 
@@ -58,7 +62,13 @@ class Times:
 
 	def whole(self, pretraced):
 		"""The whole picture, less starting, on a machine that has nothing else to do. pretraced: pixels of radiosity's look."""
-		return self.before() + self.parts["Trace"] * self.width * self.height * self.share / max(1, self.pixels - pretraced)
+		looked_at = max(1, self.pixels - pretraced)
+		times = self.width * self.height * self.share / looked_at
+		if self.added is not None:
+			own = looked_at / ((BLOCK + 1) / BLOCK) ** 2
+			rays = self.width * self.height * (self.share + self.added / own)
+			times = rays / (looked_at + self.added)
+		return self.before() + self.parts["Trace"] * times
 
 
 class Povray:
