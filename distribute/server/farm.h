@@ -32,6 +32,7 @@ struct Job {
 	JobRow row;
 	std::vector<bool> stitched; ///< by index of frame
 	int frames_done = 0;
+	std::string kind;  ///< of the first strip that came; others are refused, for they could not be joined
 	std::string doing; ///< what keeps a job from its end, once all strips are there
 };
 

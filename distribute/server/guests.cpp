@@ -111,7 +111,7 @@ Awaitable<std::string> Farm::report(LeaseId id, fs::path file, std::string sha25
 	const int row = lease.strip % spec.strips_per_frame() * spec.strip_rows, rows = std::min(spec.strip_rows, spec.height - row);
 
 	struct Checked {
-		std::string pixels, damage;
+		std::string pixels, kind, damage;
 		bool torn = false;
 	};
 	auto check = [=, this] {
@@ -121,15 +121,23 @@ Awaitable<std::string> Farm::report(LeaseId id, fs::path file, std::string sha25
 			return c;
 		try {
 			c.pixels = check_strip(spec, row, rows, file);
+			c.kind = kind_of(spec.format, file);
 		} catch (const Error& e) {
 			c.damage = e.what();
 			return c;
 		}
 		return c;
 	};
-	const Checked checked = co_await in_pool(context, pool, std::move(check));
+	Checked checked = co_await in_pool(context, pool, std::move(check));
 	if (checked.torn)
 		throw HttpError(422, "the strip was damaged on its way: send it again");
+	if (const auto found = all_jobs.find(lease.job); found != all_jobs.end() && !checked.kind.empty()) {
+		std::string& kind = found->second.kind;
+		if (kind.empty())
+			kind = checked.kind;
+		else if (kind != checked.kind)
+			checked.damage = "it is " + checked.kind + "; the job's others are " + kind;
+	}
 	if (!checked.damage.empty()) {
 		Failure failure;
 		failure.line = "the worker sent no good picture: " + checked.damage;

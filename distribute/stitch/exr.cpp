@@ -180,6 +180,20 @@ std::string check_strip(const JobSpec& spec, int row, int rows, const Path& stri
 	});
 }
 
+std::string kind_of(const Path& strip) {
+	return guarded(strip, [&] {
+		const Header believable(strip);
+		const Imf::InputFile in(strip.c_str(), 0);
+		std::string all = "EXR with";
+		for (auto c = in.header().channels().begin(); c != in.header().channels().end(); ++c)
+			all += std::string(" ") + c.name() +
+				   (c.channel().type == Imf::HALF       ? " half"
+					   : c.channel().type == Imf::FLOAT ? " float"
+														: " uint");
+		return all;
+	});
+}
+
 void stitch(const JobSpec& spec, const std::vector<Path>& strips, const Path& picture) {
 	guarded(picture, [&] {
 		Pixels all;

@@ -18,18 +18,23 @@ void cut(Format format, const std::filesystem::path& whole, int row, int rows, c
 /// does not hang on how the file is packed.
 std::string check_strip(const JobSpec& spec, int row, int rows, const std::filesystem::path& strip);
 
+/// What all strips of a job must have in common to be joined, from the file's header alone: channels, bits, gamma.
+std::string kind_of(Format format, const std::filesystem::path& strip);
+
 /// Puts all strips of a frame, in order, into one picture.
 void stitch(const JobSpec& spec, const std::vector<std::filesystem::path>& strips, const std::filesystem::path& picture);
 
 namespace png {
 void cut(const std::filesystem::path& whole, int row, int rows, const std::filesystem::path& strip);
 std::string check_strip(const JobSpec& spec, int rows, const std::filesystem::path& strip);
+std::string kind_of(const std::filesystem::path& strip);
 void stitch(const JobSpec& spec, const std::vector<std::filesystem::path>& strips, const std::filesystem::path& picture);
 } // namespace png
 
 namespace exr {
 void cut(const std::filesystem::path& whole, int row, int rows, const std::filesystem::path& strip);
 std::string check_strip(const JobSpec& spec, int row, int rows, const std::filesystem::path& strip);
+std::string kind_of(const std::filesystem::path& strip);
 void stitch(const JobSpec& spec, const std::vector<std::filesystem::path>& strips, const std::filesystem::path& picture);
 } // namespace exr
 

@@ -156,6 +156,13 @@ std::string check_strip(const JobSpec& spec, int rows, const Path& strip) {
 	return name_of(in.kind, all);
 }
 
+std::string kind_of(const Path& strip) {
+	const Kind kind = Reader(strip).kind;
+	return "PNG's colour type " + std::to_string(kind.colours) + ", " + std::to_string(kind.depth) + " bits, gamma " +
+		   (kind.has_gamma ? std::to_string(kind.gamma) : "none") +
+		   (kind.has_srgb ? ", sRGB " + std::to_string(kind.intent) : "");
+}
+
 void stitch(const JobSpec& spec, const std::vector<Path>& strips, const Path& picture) {
 	if (std::all_of(strips.begin(), strips.end(), is_joinable))
 		return join(strips, spec.height, picture);
