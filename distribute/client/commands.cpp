@@ -154,7 +154,8 @@ int log_command(const Words& words) {
 	}
 	for (const json& f : answer["failures"])
 		std::printf("%s frame %d, from row %d, on %s: %s\n%s\n", moment(f.value("when", 0.0)).c_str(), f.value("frame", 0),
-			f.value("row", 0) + 1, f.value("worker", "").c_str(), f.value("line", "").c_str(), f.value("log", "").c_str());
+			f.value("row", 0) + 1, for_terminal(f.value("worker", "")).c_str(), for_terminal(f.value("line", "")).c_str(),
+			for_terminal(f.value("log", ""), true).c_str());
 	return 0;
 }
 

@@ -12,6 +12,7 @@
 #include <cstdio>
 #include <optional>
 #include <thread>
+#include <unistd.h>
 
 namespace farm {
 namespace {
@@ -123,8 +124,17 @@ void take_over(const fs::path& from, const fs::path& to) {
 	if (!other_disk)
 		return;
 	const fs::path part = to.string() + ".part";
-	fs::copy_file(from, part, fs::copy_options::overwrite_existing);
-	fs::rename(part, to);
+	std::error_code error, ignored;
+	fs::copy_file(from, part, fs::copy_options::overwrite_existing, error);
+	// Of a disk that got full, the copying says only that it failed.
+	if (error && fs::space(to.parent_path(), ignored).available < fs::file_size(from, ignored))
+		error = std::make_error_code(std::errc::no_space_on_device);
+	if (!error)
+		fs::rename(part, to, error);
+	if (error) {
+		fs::remove(part, ignored);
+		throw Error("cannot write " + to.string() + ": " + error.message() + "; the same command goes on where it was");
+	}
 }
 
 } // namespace
@@ -147,6 +157,8 @@ int render_command(const Words& words) {
 	for (const fs::path& folder : {output, film.empty() ? output : film.parent_path()})
 		if (!fs::is_directory(folder))
 			throw Error("there is no folder " + folder.string() + " for the pictures");
+		else if (::access(folder.c_str(), W_OK) != 0)
+			throw system_error("cannot write to the folder " + folder.string());
 
 	spec.client_key = key_of(prepared, output);
 	const fs::path state = state_folder() / "render" / spec.client_key;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "distribute/client/show.h"
 
+#include "distribute/common/error.h"
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -13,7 +15,11 @@ namespace farm {
 
 using nlohmann::json;
 
-void print_table(const std::vector<std::vector<std::string>>& rows) {
+void print_table(std::vector<std::vector<std::string>> rows) {
+	// Names are others' choice: nothing in them may steer the terminal.
+	for (auto& row : rows)
+		for (auto& cell : row)
+			cell = for_terminal(cell);
 	std::vector<size_t> widths;
 	for (const auto& row : rows)
 		for (size_t c = 0; c < row.size(); ++c) {
@@ -60,7 +66,7 @@ void ProgressLine::show(const std::string& text) {
 		return;
 	winsize size{};
 	const size_t columns = ::ioctl(2, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col - 1u : 79u;
-	std::string line = text.substr(0, columns);
+	std::string line = for_terminal(text.substr(0, columns));
 	const size_t length = line.size();
 	line.append(shown > length ? shown - length : 0, ' ');
 	std::fprintf(stderr, "\r%s", line.c_str());

@@ -15,7 +15,7 @@
 namespace farm {
 
 /// Columns as wide as they need be, to stdout.
-void print_table(const std::vector<std::vector<std::string>>& rows);
+void print_table(std::vector<std::vector<std::string>> rows);
 /// 75 seconds as 1:15.
 std::string clock_text(double seconds);
 /// One line about a job.

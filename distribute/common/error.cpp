@@ -27,11 +27,14 @@ void say(const std::string& line) {
 		localtime_r(&now, &local);
 		std::strftime(stamp, sizeof stamp, "%H:%M:%S ", &local);
 	}
-	// What names a file may have anything in it.
-	std::string plain = line;
-	for (char& c : plain)
-		c = static_cast<unsigned char>(c) < ' ' || c == 127 ? ' ' : c;
-	std::fprintf(stderr, "%s%s: %s\n", stamp, program.c_str(), plain.c_str());
+	std::fprintf(stderr, "%s%s: %s\n", stamp, program.c_str(), for_terminal(line).c_str());
+}
+
+std::string for_terminal(std::string text, bool lines) {
+	for (char& c : text)
+		if ((static_cast<unsigned char>(c) < ' ' && !(lines && (c == '\n' || c == '\t'))) || c == 127)
+			c = ' ';
+	return text;
 }
 
 } // namespace farm

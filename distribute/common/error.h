@@ -18,6 +18,10 @@ Error system_error(const std::string& what);
 
 /// To stderr, one line, with the program's name in front and the time if the program is a daemon.
 void say(const std::string& line);
+
+/// The text without what steers a terminal (what names a file, a worker or a scene may have anything in it): spaces instead.
+/// `lines`: ends of lines and tabs stay.
+std::string for_terminal(std::string text, bool lines = false);
 void name_program(const std::string& name, bool timestamps);
 
 } // namespace farm

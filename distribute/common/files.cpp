@@ -5,8 +5,12 @@
 
 #include <cerrno>
 #include <cstdlib>
+#include <ctime>
 #include <fcntl.h>
+#include <mutex>
+#include <set>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <vector>
 
@@ -95,6 +99,33 @@ std::string read_file(const fs::path& file) {
 	return all;
 }
 
+namespace {
+
+/// Scratch folders whose process was killed; once for each parent. An hour old, as one just made is not locked yet.
+void remove_forsaken(const fs::path& parent) {
+	static std::mutex one_at_a_time;
+	static std::set<fs::path> seen;
+	const std::lock_guard guard(one_at_a_time);
+	if (!seen.insert(parent).second)
+		return;
+	std::error_code error;
+	for (fs::directory_iterator at(parent, error), end; !error && at != end; at.increment(error)) {
+		const std::string name = at->path().filename().string();
+		if (name.rfind("bhfarm-", 0) != 0 || name.size() != 13)
+			continue;
+		const int d = ::open(at->path().c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+		struct stat s {};
+		std::error_code ignored;
+		if (d >= 0 && ::fstat(d, &s) == 0 && s.st_uid == ::geteuid() && ::time(nullptr) - s.st_mtime >= 3600 &&
+			::flock(d, LOCK_EX | LOCK_NB) == 0)
+			fs::remove_all(at->path(), ignored);
+		if (d >= 0)
+			::close(d);
+	}
+}
+
+} // namespace
+
 std::string read_secret(const fs::path& file) {
 	std::string text = read_file(file);
 	std::error_code ignored;
@@ -107,17 +138,23 @@ std::string read_secret(const fs::path& file) {
 ScratchFolder::ScratchFolder(const fs::path& parent) {
 	std::error_code ignored;
 	fs::create_directories(parent, ignored);
+	remove_forsaken(parent);
 	const std::string pattern = (parent / "bhfarm-XXXXXX").string();
 	std::vector<char> name(pattern.begin(), pattern.end());
 	name.push_back(0);
 	if (!::mkdtemp(name.data()))
 		throw system_error("cannot make a folder in " + parent.string());
 	folder = name.data();
+	lock = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+	if (lock >= 0)
+		::flock(lock, LOCK_EX | LOCK_NB);
 }
 
 ScratchFolder::~ScratchFolder() {
 	std::error_code ignored;
 	fs::remove_all(folder, ignored);
+	if (lock >= 0)
+		::close(lock);
 }
 
 FileLock::FileLock(const fs::path& file, const std::string& taken)

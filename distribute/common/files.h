@@ -24,7 +24,8 @@ std::string read_file(const fs::path& file);
 /// Likewise, of a file that is nobody else's business; says so if others can read it.
 std::string read_secret(const fs::path& file);
 
-/// A folder of its own below `parent` (made if need be), removed with all it holds at the end of its life.
+/// A folder of its own below `parent` (made if need be), removed with all it holds at the end of its life. If its process is
+/// killed, the next one removes it that makes such a folder there an hour later or more.
 class ScratchFolder {
 public:
 	explicit ScratchFolder(const fs::path& parent);
@@ -35,6 +36,7 @@ public:
 
 private:
 	fs::path folder;
+	int lock;
 };
 
 /// An exclusive lock on a file, for as long as this lives (flock, so the kernel gives it up when the process dies).

@@ -69,10 +69,13 @@ Command povray_command(const std::filesystem::path& povray, const std::filesyste
 }
 
 std::string error_line(const std::string& log, int code, const std::filesystem::path& folder) {
-	std::string found, fatal;
+	std::string found, fatal, announced;
 	for (const std::string& line : unbroken(log)) {
-		// "Possible Parse Error" only announces the real one.
-		const bool error = line.find("rror:") != std::string::npos && line.find("Possible Parse Error:") == std::string::npos;
+		// "Possible Parse Error" only announces the real one; but that may not say which file it is that cannot be opened.
+		const bool announces = line.find("Possible Parse Error:") != std::string::npos;
+		const bool error = line.find("rror:") != std::string::npos && !announces;
+		if (announced.empty() && announces)
+			announced = line.substr(0, 2000);
 		if (found.empty() && error)
 			found = line.substr(0, 2000);
 		else if (line.rfind("Fatal error", 0) == 0 || line.rfind("Failed to ", 0) == 0)
@@ -80,6 +83,8 @@ std::string error_line(const std::string& log, int code, const std::filesystem::
 	}
 	if (found.empty())
 		found = fatal;
+	if (!announced.empty() && (found.empty() || found == fatal || found == "Parse Error: Cannot open input file."))
+		found = announced;
 	// The scene's own name for a file, not ours.
 	const std::string front = (folder / "").string();
 	for (size_t at = 0; !folder.empty() && (at = found.find(front, at)) != std::string::npos;)

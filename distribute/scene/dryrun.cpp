@@ -23,12 +23,35 @@ fs::path reads_library() {
 	throw Error("bhfarm-reads.so is missing beside bhfarm; build or install again");
 }
 
+bool plain(const fs::path& name) {
+	const std::string text = name.string();
+	return std::all_of(text.begin(), text.end(), [](unsigned char c) { return c < 128; });
+}
+
+/// POV-Ray opens no file whose name has other letters than ASCII's: a folder that has gets another name in the scratch folder.
+fs::path plain_name(const fs::path& folder, const fs::path& scratch, size_t number) {
+	if (plain(folder))
+		return folder;
+	const fs::path link = scratch / ("folder" + std::to_string(number));
+	if (!fs::is_symlink(link))
+		fs::create_directory_symlink(folder, link);
+	return link;
+}
+
+std::vector<fs::path> folders_of(const SettledScene& scene) {
+	std::vector<fs::path> folders = {scene.scene.parent_path()};
+	folders.insert(folders.end(), scene.libraries.begin(), scene.libraries.end());
+	return folders;
+}
+
 /// The scene, with everything said about it so far, behind the fence in a folder of its own.
 Command scene_command(const SettledScene& scene, std::string ini, const Trier& trier, const fs::path& scratch,
 	const std::map<std::string, std::string>& environment = {}) {
-	ini += scene_in(scene.scene.parent_path());
-	for (const auto& library : scene.libraries)
-		ini += scene_in(library);
+	if (!plain(scene.scene.filename()))
+		throw Error("POV-Ray cannot open " + scene.scene.string() + ": give it a name of ASCII letters alone");
+	const std::vector<fs::path> folders = folders_of(scene);
+	for (size_t i = 0; i < folders.size(); ++i)
+		ini += scene_in(plain_name(folders[i], scratch, i));
 	write_durably(scratch / "dry.ini", ini + "Output_To_File=Off\n");
 	const fs::path here = scratch / "here";
 	fs::create_directory(here);
@@ -82,7 +105,7 @@ Parsed parse(const SettledScene& scene, int frame, const Trier& trier) {
 	Parsed parsed;
 	parsed.seconds = since(start);
 	if (code != 0) {
-		std::string why = error_line(log, code, scene.scene.parent_path());
+		std::string why = error_line(log, code, plain_name(scene.scene.parent_path(), scratch.path(), 0));
 		// POV-Ray does not say which it did not like.
 		if (why.rfind("Failed to parse", 0) == 0)
 			for (const auto& option : scene.spec.options)
@@ -91,9 +114,14 @@ Parsed parse(const SettledScene& scene, int frame, const Trier& trier) {
 	}
 	parsed.said = flat(log);
 	std::istringstream lines(fs::exists(list) ? read_file(list) : "");
-	for (std::string line; std::getline(lines, line);)
+	const std::vector<fs::path> folders = folders_of(scene);
+	for (std::string line; std::getline(lines, line);) {
+		for (size_t i = 0; i < folders.size(); ++i)
+			if (const std::string front = (plain_name(folders[i], scratch.path(), i) / "").string(); line.rfind(front, 0) == 0)
+				line.replace(0, front.size(), (folders[i] / "").string());
 		if (line != scratch.path() / "dry.ini")
 			parsed.reads.insert(line);
+	}
 	return parsed;
 }
 

@@ -214,6 +214,12 @@ TEST(Povray, ErrorsAsOneLine) {
 							 "/sub\n/b.inc' line 2: Parse Error: Cannot open user file x\n (read).\nFatal error in parser\n",
 				  1, folder),
 		"File 'sub/b.inc' line 2: Parse Error: Cannot open user file x (read).");
+	EXPECT_EQ(
+		error_line("File 'a.pov' line 1: Possible Parse Error: Cannot find file 'no.png', even\n after trying to append file "
+				   "type extension.\nFile 'a.pov' line 1: Possible Parse Error: Cannot find image file.\nFatal error in "
+				   "parser: Cannot open file.\nRender failed\n",
+			1),
+		"File 'a.pov' line 1: Possible Parse Error: Cannot find file 'no.png', even after trying to append file type extension.");
 	EXPECT_EQ(error_line("", 137), "povray was ended by signal 9 (out of memory, perhaps)");
 	EXPECT_NE(error_line("", 0), "");
 }

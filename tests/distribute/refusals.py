@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: AGPL-3.0-or-later
 """What cannot be: one clear line that names it, a code that is not zero, and nothing is lost or left behind. (resume.py, tls.py and whole.py have more of it.)"""
+import fcntl
 import os
 import re
 import signal
@@ -103,15 +104,47 @@ for words, text in ((["status", "x"], "the job's number is 'x'"), (["status", "9
     refused(text, "bhfarm", words[0], "--server", server.url, *words[1:])
 assert server.ask("/v1/jobs")[1]["jobs"] == []
 
+# What POV-Ray itself would not name: the file that cannot be opened.
+with open(folder + "/nopicture.pov", "w") as f:
+    f.write('camera { location -5*z look_at 0 } plane { y, -1 pigment { image_map { png "nosuch.png" } } }\n')
+refused("nopicture.pov' line 1: .*'nosuch.png'", "bhfarm", "submit", "nopicture.pov", "--server", server.url)
+os.rename(folder + "/nopicture.pov", folder + "/n\u00f6.pov")
+refused("cannot open .*/n\u00f6.pov: give it a name of ASCII letters", "bhfarm", "submit", "n\u00f6.pov", "--server", server.url)
+assert server.ask("/v1/jobs")[1]["jobs"] == []
+# A folder may have any name; and what somebody killed left behind in it goes, but for what is younger or in use.
+strange = WORK + "/Ordner \u00fc"
+scene(strange, frames=5)
+os.makedirs(WORK + "/temporary")
+scratch = {name: WORK + "/temporary/bhfarm-" + name for name in ("killed", "recent", "locked")}
+for name, path in scratch.items():
+    os.makedirs(path + "/out")
+    hours = 0.5 if name == "recent" else 2
+    os.utime(path, (time.time() - 3600 * hours,) * 2)
+in_use = os.open(scratch["locked"], os.O_RDONLY)
+fcntl.flock(in_use, fcntl.LOCK_EX)
+done = subprocess.run([BIN + "/bhfarm", "submit", "film.ini", "--video", "none", "--server", server.url], env=dict(ENV, TMPDIR=WORK + "/temporary"), cwd=strange,
+                      capture_output=True, text=True)
+assert done.returncode == 0, done
+assert sorted(os.listdir(WORK + "/temporary")) == ["bhfarm-locked", "bhfarm-recent"], os.listdir(WORK + "/temporary")
+os.close(in_use)
+names = [f["name"] for f in server.ask("/v1/bundles/" + server.job(int(done.stdout))["spec"]["bundle"])[1]["files"]]
+assert {"film.pov", "parts/sky.inc", "colors.inc"} <= set(names), names
+bhfarm("remove", done.stdout.strip(), server=server)
+
 # A frame that nobody looked at before fails in words that are no UTF-8: the submitter reads them all the same. The worker goes on.
 with open(folder + "/parts/sky.inc", "ab") as f:
-    f.write(b'#if (clock > 0.2 & clock < 0.3) #error "caf\xe9 \xff" #end\n')
+    f.write(b'#if (clock > 0.2 & clock < 0.3) #error "caf\xe9 \xff \x1b[2J" #end\n')
 worker = server.worker()
 number = int(bhfarm("submit", ini, "--video", "none", server=server).stdout)
 done = bhfarm("watch", str(number), server=server, good=False)
 assert done.returncode == 1 and "frame 2" in done.stderr and "caf" in done.stderr, done
 log = bhfarm("log", str(number), server=server).stdout
-assert "caf" in log.split("\n")[0], log
+assert "caf" in log.split("\n")[0] and "\x1b" not in log, log
+# Nor does a worker's name steer the terminal.
+other = Server()
+assert other.ask("/v1/workers", {"id": "a-worker-of-mine", "name": "\x1b]0;x\x07one\ntwo", "slots": 1, "povray": "3.7", "probe": ""})[0] == 201
+table = bhfarm("workers", server=other).stdout
+assert "one two" in table and "\x1b" not in table and "\x07" not in table and table.count("\n") == 2, table
 one = int(bhfarm("submit", ini, "--frames", "1", "--video", "none", server=server).stdout)
 bhfarm("watch", str(one), server=server)
 
@@ -123,6 +156,16 @@ if os.geteuid() == 0:
     if "unshare" not in done.stderr and "mount" not in done.stderr:
         lines = done.stderr.strip().split("\n")
         assert done.returncode == 1 and len(lines) == 1 and "No space left" in lines[0] and WORK + "/small/film1.png" in lines[0], done
+    # As after 'bhfarm render'.
+    script = ("mount -t tmpfs -o size=8k none %s/small && cd %s/small && %s/bhfarm render ../Ordner*/film.ini --frames 1-2; echo code $?; ls; mount -o remount,size=1m %s/small && "
+              "%s/bhfarm render ../Ordner*/film.ini --frames 1-2" % (WORK, WORK, BIN, WORK, BIN))
+    done = subprocess.run(["unshare", "-m", "sh", "-c", script], env=ENV, capture_output=True, text=True)
+    if "unshare" not in done.stderr and "mount" not in done.stderr:
+        assert done.returncode == 0 and done.stderr.startswith("bhfarm: cannot write %s/small/film1.png: No space left on device" % WORK), done
+        assert done.stdout.split("\n")[:2] == ["code 1", WORK + "/small/film1.png"], done
+else:
+    os.makedirs(WORK + "/sealed", 0o500)
+    refused("cannot write to the folder " + WORK + "/sealed: Permission denied", "bhfarm", "render", "film.ini", "+O" + WORK + "/sealed/")
 bhfarm("fetch", str(one), "--to", WORK + "/out", server=server)
 assert os.path.exists(WORK + "/out/film1.png")
 print("each one line, nothing lost")
