@@ -9,8 +9,10 @@
 #include "distribute/common/hash.h"
 #include "distribute/common/process.h"
 
+#include <chrono>
 #include <cstdio>
 #include <ctime>
+#include <thread>
 #include <unistd.h>
 
 namespace farm {
@@ -45,6 +47,19 @@ std::string moment(double seconds) {
 	return text;
 }
 
+/// Again when the network fails; what came before is not lost by it.
+template <class Function> auto patiently(Function function) {
+	for (int tries = 1;; ++tries) {
+		try {
+			return function();
+		} catch (const Unreachable&) {
+			if (tries == 5)
+				throw;
+			std::this_thread::sleep_for(std::chrono::seconds(1));
+		}
+	}
+}
+
 int outcome(const json& job) {
 	const std::string stage = job.value("stage", ""), error = job.value("error", "");
 	say("job " + std::to_string(job.value("id", 0)) + " " + stage + (stage == "done" ? "" : ", " + progress_text(job)) +
@@ -76,8 +91,10 @@ int submit_command(const Words& words) {
 	for (const json& w : workers.at("workers"))
 		slots += w.value("slots", 0);
 	// With nobody there yet, a small lab's worth.
-	const Prepared prepared = prepare(a, slots > 0 ? slots : 16);
-	const std::int64_t id = send_job(client, prepared);
+	Prepared prepared = prepare(a, slots > 0 ? slots : 16);
+	// So that a job whose answer was lost is not two jobs.
+	prepared.scene.spec.client_key = random_hex(16);
+	const std::int64_t id = patiently([&] { return send_job(client, prepared); });
 	if (a.has("--json"))
 		std::puts(client.get(path_of(id)).dump().c_str());
 	else
@@ -160,7 +177,7 @@ int log_command(const Words& words) {
 }
 
 int fetch_command(const Words& words) {
-	const auto options = std::vector<Option>{{"--to", "DIR", "where to put them", "."}} + server_options;
+	const auto options = std::vector<Option>{{"--to", "DIR", "where to put them", "."}, json_option} + server_options;
 	const Arguments a(words, options);
 	help_if_asked(a,
 		"bhfarm fetch JOB\nThe frames that are finished, and the film. Those that are there already are not fetched again.",
@@ -170,38 +187,50 @@ int fetch_command(const Words& words) {
 	const json job = client.get(path_of(id)), done = client.get(path_of(id, "/pictures"));
 	const fs::path folder = a.get("--to");
 	fs::create_directories(folder);
-	for (const json& picture : done.at("pictures")) {
-		const std::string name = picture.get<std::string>();
-		if (name.find('/') == std::string::npos && !fs::exists(folder / name))
-			client.download(path_of(id, "/frames/" + url_encode(name)), folder / name);
-		std::puts((folder / name).c_str());
-	}
-	if (const std::string film = job.value("film", "");
-		job.value("stage", "") == "done" && !film.empty() && film.find('/') == std::string::npos) {
-		client.download(path_of(id, "/film"), folder / film);
-		std::puts((folder / film).c_str());
-	}
+	json names = json::array();
+	const auto bring = [&](const std::string& name, const std::string& path) {
+		if (name.find('/') != std::string::npos)
+			throw Error("the server names a file '" + name + "'");
+		if (!fs::exists(folder / name))
+			patiently([&] { client.download(path, folder / name); });
+		if (!a.has("--json"))
+			std::puts((folder / name).c_str());
+		names.push_back((folder / name).string());
+	};
+	for (const json& picture : done.at("pictures"))
+		bring(picture.get<std::string>(), path_of(id, "/frames/" + url_encode(picture.get<std::string>())));
+	if (const std::string film = job.value("film", ""); job.value("stage", "") == "done" && !film.empty())
+		bring(film, path_of(id, "/film"));
+	if (a.has("--json"))
+		std::puts(json{{"files", names}}.dump().c_str());
 	return 0;
 }
 
 int change_command(const std::string& what, const Words& words) {
-	const Arguments a(words, server_options);
-	help_if_asked(a, "bhfarm " + what + " JOB", server_options);
-	connect(a).post(path_of(job_number(a), "/" + what), json::object());
+	const auto options = std::vector<Option>{json_option} + server_options;
+	const Arguments a(words, options);
+	help_if_asked(a, "bhfarm " + what + " JOB", options);
+	Client client = connect(a);
+	client.post(path_of(job_number(a), "/" + what), json::object());
+	if (a.has("--json"))
+		std::puts(client.get(path_of(job_number(a))).dump().c_str());
 	return 0;
 }
 
 int remove_command(const Words& words) {
-	const Arguments a(words, server_options);
-	help_if_asked(a, "bhfarm remove JOB\nThe job, its frames, and all the server knows of it.", server_options);
+	const auto options = std::vector<Option>{json_option} + server_options;
+	const Arguments a(words, options);
+	help_if_asked(a, "bhfarm remove JOB\nThe job, its frames, and all the server knows of it.", options);
 	connect(a).remove(path_of(job_number(a)));
+	if (a.has("--json"))
+		std::puts(json{{"removed", job_number(a)}}.dump().c_str());
 	return 0;
 }
 
 int drain_command(const Words& words) {
-	const Arguments a(words, server_options);
-	help_if_asked(
-		a, "bhfarm drain WORKER\nThe worker finishes what it has and leaves. 'bhfarm workers' lists them.", server_options);
+	const auto options = std::vector<Option>{json_option} + server_options;
+	const Arguments a(words, options);
+	help_if_asked(a, "bhfarm drain WORKER\nThe worker finishes what it has and leaves. 'bhfarm workers' lists them.", options);
 	if (a.rest.size() != 1)
 		throw Error("which worker? 'bhfarm workers' lists them");
 	Client client = connect(a);
@@ -213,6 +242,8 @@ int drain_command(const Words& words) {
 	if (id.empty())
 		throw Error("there is no worker " + a.rest[0]);
 	client.post("/v1/workers/" + id + "/drain", json::object());
+	if (a.has("--json"))
+		std::puts(json{{"draining", id}}.dump().c_str());
 	return 0;
 }
 

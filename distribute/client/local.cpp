@@ -11,6 +11,7 @@
 #include <csignal>
 #include <cstdio>
 #include <optional>
+#include <set>
 #include <thread>
 #include <unistd.h>
 
@@ -22,9 +23,11 @@ std::atomic<bool> interrupted = false;
 void interrupt(int) { interrupted = true; }
 
 /// What goes on of this job from one command to the next: everything hangs on the scene's files, its options and where the
-/// pictures go.
+/// pictures go. Not on how frames are cut, which hangs on how busy the machine was.
 std::string key_of(const Prepared& p, const fs::path& folder) {
-	return sha256(json(p.scene.spec).dump() + "\n" + folder.string()).substr(0, 24);
+	JobSpec spec = p.scene.spec;
+	spec.strip_rows = 1;
+	return sha256(json(spec).dump() + "\n" + folder.string()).substr(0, 24);
 }
 
 /// Waits for the end of a process that was told to; killed if it will not.
@@ -118,24 +121,57 @@ private:
 	int deaths = 0;
 };
 
-void take_over(const fs::path& from, const fs::path& to) {
-	std::error_code other_disk;
-	fs::rename(from, to, other_disk);
-	if (!other_disk)
-		return;
+/// Puts a finished picture where it belongs, whole or not at all; the server keeps its own, which costs nothing on the same disk.
+void hand_over(const fs::path& from, const fs::path& to) {
 	const fs::path part = to.string() + ".part";
 	std::error_code error, ignored;
-	fs::copy_file(from, part, fs::copy_options::overwrite_existing, error);
+	fs::remove(part, ignored);
+	fs::create_hard_link(from, part, error);
+	if (error) // another disk
+		fs::copy_file(from, part, fs::copy_options::overwrite_existing, error);
 	// Of a disk that got full, the copying says only that it failed.
 	if (error && fs::space(to.parent_path(), ignored).available < fs::file_size(from, ignored))
 		error = std::make_error_code(std::errc::no_space_on_device);
 	if (!error)
 		fs::rename(part, to, error);
-	if (error) {
-		fs::remove(part, ignored);
+	fs::remove(part, ignored); // it stays where both are the same file already
+	if (error)
 		throw Error("cannot write " + to.string() + ": " + error.message() + "; the same command goes on where it was");
-	}
 }
+
+/// Frames as they are finished.
+class Output {
+public:
+	Output(const JobSpec& s, const fs::path& f) : spec(s), folder(f) {}
+
+	void bring(Client& client, const fs::path& spool, const json& job) {
+		if (!job.is_object() || job.value("frames_done", 0) <= static_cast<int>(there.size()))
+			return;
+		const std::string number = std::to_string(job.value("id", 0));
+		try {
+			const json done = client.get("/v1/jobs/" + number + "/pictures");
+			for (const json& picture : done.at("pictures"))
+				if (const std::string name = picture.get<std::string>(); !there.count(name)) {
+					hand_over(spool / "jobs" / number / "frames" / name, folder / name);
+					there.insert(name);
+				}
+		} catch (const Unreachable&) { // the next time
+		}
+	}
+	void rest(const fs::path& made) {
+		for (int i = 0; i < spec.frames(); ++i) {
+			const std::string name = spec.picture(spec.frame(i));
+			if (!there.count(name))
+				hand_over(made / name, folder / name);
+			std::puts((folder / name).c_str());
+		}
+	}
+
+private:
+	const JobSpec& spec;
+	fs::path folder;
+	std::set<std::string> there;
+};
 
 } // namespace
 
@@ -172,6 +208,7 @@ int render_command(const Words& words) {
 	std::signal(SIGTERM, interrupt);
 	std::signal(SIGHUP, interrupt);
 	LocalFarm farm(state, slots, a.get("--povray"), prepared.sandbox.fences());
+	Output frames(spec, output);
 	json job;
 	if (const std::string url = farm.start_server(); !url.empty()) {
 		farm.start_worker();
@@ -183,7 +220,10 @@ int render_command(const Words& words) {
 		} else if (const int done = job.value("strips_done", 0); done > 0) {
 			say("going on where it was: " + progress_text(job));
 		}
-		job = follow(client, id, 60, interrupted, [&] { farm.mend(); });
+		job = follow(client, id, 60, interrupted, [&](const json& now) {
+			farm.mend();
+			frames.bring(client, farm.spool(), now);
+		});
 	}
 	const std::string stage = job.is_object() ? job.value("stage", "") : "";
 	farm.stop(stage == "done");
@@ -193,14 +233,10 @@ int render_command(const Words& words) {
 		return stage == "failed" ? 1 : 130;
 	}
 	const fs::path made = farm.spool() / "jobs" / std::to_string(job.value("id", 0)) / "frames";
-	for (int i = 0; i < spec.frames(); ++i) {
-		const std::string picture = spec.picture(spec.frame(i));
-		take_over(made / picture, output / picture);
-		std::puts((output / picture).c_str());
-	}
+	frames.rest(made);
 	int code = 0;
 	if (!film.empty() && fs::exists(made / (spec.name + ".mp4"))) {
-		take_over(made / (spec.name + ".mp4"), film);
+		hand_over(made / (spec.name + ".mp4"), film);
 		std::puts(film.c_str());
 	} else if (!film.empty()) {
 		say(job.value("error", "there is no film"));

@@ -82,8 +82,8 @@ void ProgressLine::clear() {
 	}
 }
 
-json follow(
-	Client& client, std::int64_t id, double patience, const std::atomic<bool>& stop, const std::function<void()>& each_time) {
+json follow(Client& client, std::int64_t id, double patience, const std::atomic<bool>& stop,
+	const std::function<void(const json&)>& each_time) {
 	using Clock = std::chrono::steady_clock;
 	ProgressLine progress;
 	auto heard = Clock::now();
@@ -102,7 +102,7 @@ json follow(
 		}
 		std::this_thread::sleep_for(std::chrono::milliseconds(200));
 		if (each_time)
-			each_time();
+			each_time(job);
 	}
 	return job;
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <sstream>
 
 namespace farm {
 
@@ -52,6 +53,19 @@ std::vector<std::string> Arguments::all(const std::string& name) const {
 
 long Arguments::number(const std::string& name, long least, long most) const {
 	return whole_number(get(name), name, least, most);
+}
+
+double Arguments::real(const std::string& name, double least, double most) const {
+	const std::string& text = get(name);
+	double value = 0;
+	const char* end = text.data() + text.size();
+	const auto [at, error] = std::from_chars(text.data(), end, value);
+	if (error != std::errc() || at != end || !(value >= least && value <= most)) {
+		std::ostringstream range;
+		range << least << " to " << most;
+		throw Error(name + " is '" + text + "'; it must be a number from " + range.str());
+	}
+	return value;
 }
 
 long whole_number(const std::string& text, const std::string& what, long least, long most) {

@@ -29,6 +29,8 @@ public:
 	std::vector<std::string> all(const std::string& name) const;
 	/// As a whole number within [least, most]; throws Error, naming the option.
 	long number(const std::string& name, long least, long most) const;
+	/// Likewise, with decimals.
+	double real(const std::string& name, double least, double most) const;
 	std::vector<std::string> rest;
 
 private:

@@ -12,7 +12,12 @@ std::string program = "bhfarm";
 bool stamped = false;
 } // namespace
 
-Error system_error(const std::string& what) { return Error(what + ": " + std::strerror(errno)); }
+bool Error::disk_full() const { return number == ENOSPC || number == EDQUOT; }
+
+Error system_error(const std::string& what) {
+	const int number = errno;
+	return Error(what + ": " + std::strerror(number), number);
+}
 
 void name_program(const std::string& name, bool timestamps) {
 	program = name;

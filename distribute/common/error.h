@@ -10,7 +10,10 @@ namespace farm {
 
 /// Something the user can set right: one line that names the file or the value and what would be right.
 struct Error : std::runtime_error {
-	using std::runtime_error::runtime_error;
+	explicit Error(const std::string& what, int errno_value = 0) : std::runtime_error(what), number(errno_value) {}
+	/// Whether a disk had no room for it: to be tried again when there is.
+	bool disk_full() const;
+	int number; ///< errno where the system said no; else 0
 };
 
 /// Unix's word for errno, with what was being done: "cannot write x: No space left on device".

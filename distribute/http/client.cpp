@@ -11,6 +11,9 @@
 #include <cstdlib>
 #include <cstring>
 #include <memory>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/socket.h>
 #include <utility>
 
 namespace farm {
@@ -57,6 +60,16 @@ size_t give(char* data, size_t one, size_t count, void* from) {
 
 int watch(void* flag, curl_off_t, curl_off_t, curl_off_t, curl_off_t) {
 	return static_cast<const std::atomic<bool>*>(flag)->load() ? 1 : 0;
+}
+
+/// A cable that was pulled is noticed within half a minute, whether something was to be sent or waited for.
+int notice_silence(void*, curl_socket_t socket, curlsocktype) {
+	const int on = 1, idle = 10, every = 5, most = 20000; // seconds; the last milliseconds
+	::setsockopt(socket, SOL_SOCKET, SO_KEEPALIVE, &on, sizeof on);
+	::setsockopt(socket, IPPROTO_TCP, TCP_KEEPIDLE, &idle, sizeof idle);
+	::setsockopt(socket, IPPROTO_TCP, TCP_KEEPINTVL, &every, sizeof every);
+	::setsockopt(socket, IPPROTO_TCP, TCP_USER_TIMEOUT, &most, sizeof most);
+	return CURL_SOCKOPT_OK;
 }
 
 struct Library {
@@ -109,6 +122,7 @@ json Client::ask(Ask& request) {
 	curl_easy_setopt(curl, CURLOPT_WRITEDATA, &reply);
 	curl_easy_setopt(curl, CURLOPT_NOSIGNAL, 1L);
 	curl_easy_setopt(curl, CURLOPT_CONNECTTIMEOUT, 10L);
+	curl_easy_setopt(curl, CURLOPT_SOCKOPTFUNCTION, notice_silence);
 	curl_easy_setopt(curl, CURLOPT_PROTOCOLS_STR, "http,https");
 	// What moves no byte for so long has stalled.
 	curl_easy_setopt(curl, CURLOPT_LOW_SPEED_LIMIT, 1L);
@@ -137,7 +151,7 @@ json Client::ask(Ask& request) {
 	if (code == CURLE_URL_MALFORMAT || code == CURLE_PEER_FAILED_VERIFICATION || code == CURLE_SSL_CACERT_BADFILE)
 		throw Distrusted("no answer from " + access.url + ": " + (*why ? why : curl_easy_strerror(code)));
 	if (reply.error)
-		throw Unreachable("cannot write " + request.place + ": " + std::strerror(reply.error));
+		throw Error("cannot write " + request.place + ": " + std::strerror(reply.error), reply.error);
 	if (code != CURLE_OK)
 		throw Unreachable("no answer from " + access.url + ": " + (*why ? why : curl_easy_strerror(code)));
 	if (request.download && status == 200)

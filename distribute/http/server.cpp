@@ -245,7 +245,7 @@ template <class Stream> Awaitable<bool> HttpServer::exchange(Stream& stream, Con
 			throw HttpError(413, "the body is longer than " + std::to_string(limit) + " bytes");
 		if (error.category() == boost::system::generic_category() || error.category() == boost::system::system_category()) {
 			if (error == boost::system::errc::no_space_on_device)
-				throw HttpError(507, "no space left on the server");
+				throw Error("cannot write " + request.file.string() + ": " + error.message(), ENOSPC);
 		}
 		if (error) {
 			std::error_code ignored;
@@ -266,10 +266,15 @@ template <class Stream> Awaitable<bool> HttpServer::exchange(Stream& stream, Con
 		if (request.peer && request.peer->gone)
 			co_return false;
 	} catch (const HttpError& e) {
+		if (e.status == 507 && settings.full)
+			settings.full(e.what());
 		response =
 			e.status == 401 && request.path == "/" && settings.sign_in ? settings.sign_in() : error_response(e.status, e.what());
 	} catch (const Error& e) {
-		response = error_response(400, e.what());
+		// What the system would not do is no fault of the request's.
+		response = error_response(e.disk_full() ? 507 : e.number ? 500 : 400, e.what());
+		if (e.disk_full() && settings.full)
+			settings.full(e.what());
 	} catch (const std::exception& e) {
 		say("while answering " + request.method + " " + request.path + ": " + e.what());
 		response = error_response(500, e.what());

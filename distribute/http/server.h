@@ -21,9 +21,10 @@ struct ServerSettings {
 	std::function<std::filesystem::path()> fresh_file; ///< names for bodies that go to files
 	/// Writes such a body elsewhere than on this thread, which would wait for the disk. Throws HttpError.
 	std::function<Awaitable<void>(const std::filesystem::path& file, const std::string& body)> write_file;
-	int connections = 60000;    ///< more are turned away with 503
-	double header_seconds = 60; ///< an idle connection is closed after this
-	double body_seconds = 600;  ///< the most one body may take
+	std::function<void(const std::string& what)> full; ///< called when a disk has no room for what came
+	int connections = 60000;                           ///< more are turned away with 503
+	double header_seconds = 60;                        ///< an idle connection is closed after this
+	double body_seconds = 600;                         ///< the most one body may take
 };
 
 class HttpServer {

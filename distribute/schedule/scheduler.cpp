@@ -89,6 +89,8 @@ void Scheduler::retry(JobId id) {
 	for (int s = 0; s < j->next; ++s)
 		if (j->state[static_cast<size_t>(s)] == StripState::given_up) {
 			j->trouble.erase(s);
+			for (auto asked = j->asked.begin(); asked != j->asked.end();)
+				asked = asked->second == s ? j->asked.erase(asked) : std::next(asked);
 			release(*j, s);
 		}
 	update_ready(*j);
@@ -97,13 +99,15 @@ void Scheduler::retry(JobId id) {
 void Scheduler::add_worker(const WorkerId& id, int slots, Time now, bool pardon) {
 	WorkerState& w = worker_states[id];
 	w.slots = slots;
-	w.heard = now;
+	w.heard = w.asks = now;
 	w.draining = false;
 	if (pardon) {
-		w.aside.clear();
+		banned.erase(id);
 		w.blame = w.failures = 0;
 		w.rests_until = 0;
 	}
+	const auto known = banned.find(id);
+	w.aside = known == banned.end() ? "" : known->second;
 }
 
 void Scheduler::remove_worker(const WorkerId& id, Changes& changes) {
@@ -123,21 +127,22 @@ void Scheduler::drain(const WorkerId& id, bool draining) {
 		w->draining = draining;
 }
 
-// Whether there is a worker that has neither failed this strip nor said anything about it.
-bool Scheduler::somebody_else(const JobState& j, int strip, const WorkerId& than) const {
+// Whether there is a worker that has neither failed this strip, nor given it back, nor said anything about it, and that works or
+// asks for work.
+bool Scheduler::somebody_else(const JobState& j, int strip, Time now, const WorkerId& than) const {
 	const auto found = j.trouble.find(strip);
 	for (const auto& [id, w] : worker_states) {
-		if (!w.aside.empty() || w.draining || id == than)
+		if (!w.aside.empty() || w.draining || id == than || (w.leases.empty() && w.asks + rules.absent < now))
 			continue;
 		const auto voted = [&id = id](const Vote& v) { return v.worker == id; };
-		if (found == j.trouble.end() ||
-			(!found->second.failed_by.count(id) && std::none_of(found->second.votes.begin(), found->second.votes.end(), voted)))
+		if (found == j.trouble.end() || (!found->second.failed_by.count(id) && !found->second.returned_by.count(id) &&
+											std::none_of(found->second.votes.begin(), found->second.votes.end(), voted)))
 			return true;
 	}
 	return false;
 }
 
-bool Scheduler::may_take(const JobState& j, int strip, const WorkerId& id) const {
+bool Scheduler::may_take(const JobState& j, int strip, const WorkerId& id, Time now) const {
 	const auto found = j.trouble.find(strip);
 	if (found == j.trouble.end())
 		return true;
@@ -145,12 +150,12 @@ bool Scheduler::may_take(const JobState& j, int strip, const WorkerId& id) const
 	// One worker has one vote.
 	if (std::any_of(t.votes.begin(), t.votes.end(), [&](const Vote& v) { return v.worker == id; }))
 		return false;
-	return !t.failed_by.count(id) || !somebody_else(j, strip);
+	return !t.failed_by.count(id) || !somebody_else(j, strip, now);
 }
 
-std::optional<int> Scheduler::first_waiting(JobState& j, const WorkerId& id) {
+std::optional<int> Scheduler::first_waiting(JobState& j, const WorkerId& id, Time now) {
 	for (const int strip : j.returned)
-		if (may_take(j, strip, id))
+		if (may_take(j, strip, id, now))
 			return strip;
 	return j.next < j.strips ? std::optional<int>(j.next) : std::nullopt;
 }
@@ -164,52 +169,29 @@ std::optional<StripRef> Scheduler::straggler(const WorkerId& id, Time now) {
 		JobState& j = job_states.at(lease.job);
 		const double enough = j.timed ? rules.straggler * j.seconds / j.timed : rules.straggler_first;
 		const bool open = j.stage == Stage::running && j.state[static_cast<size_t>(lease.strip)] == StripState::out;
-		if (lease.worker != id && open && age >= enough && may_take(j, lease.strip, id))
+		if (lease.worker != id && open && age >= enough && may_take(j, lease.strip, id, now))
 			return StripRef{lease.job, lease.strip};
 	}
 	return std::nullopt;
 }
 
 Lease Scheduler::lend(JobState& j, int strip, const WorkerId& id, Time now) {
-	Lease lease{next_lease++, j.id, strip, id, now, now + rules.lease};
+	Lease lease{next_lease, j.id, strip, id, now, now + rules.lease};
 	restore_lease(lease, now);
+	next_lease += static_cast<LeaseId>(chance() % static_cast<unsigned>(rules.lease_gap));
 	return lease;
-}
-
-void Scheduler::restore_lease(const Lease& old, Time now) {
-	JobState* j = job(old.job);
-	if (!j || old.strip < 0 || old.strip >= j->strips || j->state[static_cast<size_t>(old.strip)] == StripState::settled)
-		return;
-	Lease lease = old;
-	lease.expires = now + rules.lease;
-	next_lease = std::max(next_lease, lease.id + 1);
-	for (; j->next <= lease.strip; ++j->next)
-		if (j->state[static_cast<size_t>(j->next)] == StripState::waiting)
-			j->returned.insert(j->next);
-	j->returned.erase(lease.strip);
-	j->state[static_cast<size_t>(lease.strip)] = StripState::out;
-	auto& out = j->out[lease.strip];
-	out.push_back(lease.id);
-	if (out.size() == 1)
-		alone.insert(lease.id);
-	else
-		alone.erase(out.front());
-	lease_states[lease.id] = lease;
-	if (WorkerState* w = worker(lease.worker))
-		w->leases.insert(lease.id);
-	update_ready(*j);
 }
 
 std::optional<Lease> Scheduler::take(const WorkerId& id, Time now) {
 	WorkerState* w = worker(id);
 	if (!w)
 		return std::nullopt;
-	w->heard = now;
+	w->heard = w->asks = now;
 	if (!w->aside.empty() || w->draining || now < w->rests_until)
 		return std::nullopt;
 	for (const auto& [order, job_id] : ready) {
 		JobState& j = job_states.at(job_id);
-		if (const auto strip = first_waiting(j, id))
+		if (const auto strip = first_waiting(j, id, now))
 			return lend(j, *strip, id, now);
 	}
 	if (const auto slow = straggler(id, now))
@@ -281,10 +263,14 @@ bool Scheduler::give_back(LeaseId id) {
 	const Lease* found = lease(id);
 	if (!found)
 		return false;
-	const StripRef strip{found->job, found->strip};
+	const Lease lease = *found;
 	end_lease(id);
-	if (JobState* j = job(strip.job))
-		release(*j, strip.strip);
+	if (JobState* j = job(lease.job)) {
+		// An opinion that is waited for will not come from here.
+		if (const auto t = j->trouble.find(lease.strip); t != j->trouble.end())
+			t->second.returned_by.insert(lease.worker);
+		release(*j, lease.strip);
+	}
 	return true;
 }
 

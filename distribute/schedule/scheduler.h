@@ -15,6 +15,7 @@
 
 #include <map>
 #include <optional>
+#include <random>
 #include <set>
 #include <unordered_map>
 #include <vector>
@@ -54,9 +55,11 @@ public:
 	/// Ends leases that have not been heard of in time; to be called every second or so.
 	void tick(Time now, Changes& changes);
 
-	/// What was known before a restart: first the jobs, then the votes in their order, then leases that were out (they get a
-	/// fresh term).
-	void restore_vote(JobId job, int strip, const WorkerId& worker, PixelHash hash, bool settled, Changes& changes);
+	/// What was known before a restart: first the jobs and who was set aside, then each job's votes by strip and in their order,
+	/// then leases that were out (they get a fresh term). Votes are counted anew: what they decided may not have been written
+	/// down.
+	void restore_aside(const WorkerId& worker, const std::string& why) { banned[worker] = why; }
+	void restore_votes(JobId job, const std::map<int, std::vector<Vote>>& votes, Changes& changes);
 	void restore_lease(const Lease& lease, Time now);
 	void restore_failed(JobId job);
 
@@ -72,24 +75,30 @@ public:
 private:
 	JobState* job(JobId id);
 	WorkerState* worker(const WorkerId& id);
-	bool may_take(const JobState& job, int strip, const WorkerId& worker) const;
-	std::optional<int> first_waiting(JobState& job, const WorkerId& worker);
+	bool may_take(const JobState& job, int strip, const WorkerId& worker, Time now) const;
+	std::optional<int> first_waiting(JobState& job, const WorkerId& worker, Time now);
 	std::optional<StripRef> straggler(const WorkerId& worker, Time now);
 	Lease lend(JobState& job, int strip, const WorkerId& worker, Time now);
 	void end_lease(LeaseId id);
 	void end_leases_of(JobState& job, int strip, Changes& changes);
 	void release(JobState& job, int strip);
-	void vote(JobState& job, int strip, const WorkerId& worker, PixelHash hash, Changes& changes);
-	void settle(JobState& job, int strip, const WorkerId& worker, PixelHash hash, Changes& changes);
+	void vote(JobState& job, int strip, const WorkerId& worker, PixelHash hash, Time now, Changes& changes);
+	void settle(JobState& job, int strip, const WorkerId& worker, PixelHash hash, Time now, Changes& changes);
+	void reopen(JobState& job, int strip, Changes& changes);
+	/// Asks another about a strip of each worker whose word nobody has confirmed, or only of those that have gone.
+	void doubt(JobState& job, bool only_gone, Time now, Changes& changes);
+	void ask_another(JobState& job, int strip, const WorkerId& about);
 	void set_aside(const WorkerId& worker, const std::string& why, Changes& changes);
 	bool wants_second(const JobState& job, int strip, const WorkerId& worker) const;
-	bool somebody_else(const JobState& job, int strip, const WorkerId& than = {}) const;
+	bool somebody_else(const JobState& job, int strip, Time now, const WorkerId& than = {}) const;
 	void give_up(JobState& job, int strip, Changes& changes);
 	void update_ready(JobState& job);
-	void check_done(JobState& job, Changes& changes);
+	void check_done(JobState& job, Time now, Changes& changes);
 
 	Rules rules;
 	LeaseId next_lease;
+	std::minstd_rand chance{std::random_device()()};
+	std::map<WorkerId, std::string> banned; // set aside, and why; also those that are not here
 	std::map<JobId, JobState> job_states;
 	std::map<WorkerId, WorkerState> worker_states;
 	std::map<LeaseId, Lease> lease_states; // by id, so by age

@@ -29,6 +29,9 @@ struct Rules {
 	double straggler_first = 120; ///< or so many where nothing is done yet
 	int check_every = 32;         ///< one in so many strips, and a worker's first of each job, is rendered by two; 0: none
 	double check_patience = 30;   ///< seconds to wait for a second worker, where there is none
+	double absent = 60;           ///< seconds without asking for work after which an idle worker's opinion is not waited for
+	int doubts = 3;               ///< times that one of a worker's strips is opened again to check its word, a job
+	int lease_gap = 1;            ///< leases' ids go up by 1 to so many, at random, so that nobody hits another's by mistake
 	double rest = 1;              ///< seconds a worker rests after its second failure in a row; doubles each time, to a minute
 };
 
@@ -51,11 +54,12 @@ enum class StripState : std::uint8_t { waiting, out, settled, given_up };
 struct Vote {
 	WorkerId worker;
 	PixelHash hash;
+	bool settled = false; ///< of those restored: whether it had settled its strip
 };
 
 /// What is known of a strip beyond its state; only strips with something to tell have one.
 struct Trouble {
-	std::set<WorkerId> failed_by;
+	std::set<WorkerId> failed_by, returned_by;
 	int failures = 0, losses = 0;
 	std::vector<Vote> votes; ///< while more than one is needed
 	int needed = 1;          ///< votes for one hash
@@ -78,10 +82,13 @@ struct JobState {
 	std::vector<Settled> result;
 	std::unordered_map<int, Trouble> trouble;
 	std::unordered_map<int, std::vector<LeaseId>> out;
-	std::map<WorkerId, int> names; ///< workers that answered, numbered
-	int given_up = -1;             ///< the strip that failed the job
-	double seconds = 0;            ///< what settled strips took, in all
-	int timed = 0;                 ///< how many those are
+	std::map<WorkerId, int> names;  ///< workers that answered, numbered
+	std::set<WorkerId> confirmed;   ///< those of them with whom another has agreed
+	std::map<WorkerId, int> asked;  ///< of those with whom none has yet, the strip that another is asked about
+	std::map<WorkerId, int> doubts; ///< how often one of its settled strips was opened again for that
+	int given_up = -1;              ///< the strip that failed the job
+	double seconds = 0;             ///< what settled strips took, in all
+	int timed = 0;                  ///< how many those are
 
 	int waiting() const { return strips - next + static_cast<int>(returned.size()); }
 };
@@ -89,6 +96,7 @@ struct JobState {
 struct WorkerState {
 	int slots = 1;
 	Time heard = 0; ///< last heartbeat
+	Time asks = 0;  ///< when it last asked for work
 	std::set<LeaseId> leases;
 	std::string aside; ///< why it gets no work; empty: it does
 	bool draining = false;
@@ -103,7 +111,8 @@ struct Changes {
 	std::vector<Lease> ended; ///< leases taken away: expired, or no longer needed
 	std::vector<StripRef> settled;
 	std::vector<StripRef> reopened;
-	std::vector<StripRef> given_up; ///< the job failed of this
+	std::vector<StripRef> given_up;               ///< the job failed of this
+	std::map<JobId, std::vector<WorkerId>> split; ///< of those, where the answers differed: whose
 	std::vector<JobId> done;
 	std::vector<std::pair<WorkerId, std::string>> aside; ///< and why
 	std::vector<WorkerId> gone;                          ///< not heard of for a lease's time

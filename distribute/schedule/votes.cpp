@@ -6,18 +6,13 @@
 #include <cmath>
 
 namespace farm {
+namespace {
 
-// Spot checks: a worker's first strip of a job, and then one in so many, strewn by SplitMix64's finalizer (Steele, Lea and Flood,
-// Fast splittable pseudorandom number generators, 2014) so that no rhythm of the farm keeps step with them.
-bool Scheduler::wants_second(const JobState& j, int strip, const WorkerId& id) const {
-	if (rules.check_every <= 0)
-		return false;
-	std::uint64_t z = (static_cast<std::uint64_t>(j.id) << 32) + static_cast<std::uint64_t>(strip);
-	z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
-	z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
-	z ^= z >> 31;
-	return !j.names.count(id) || z % static_cast<std::uint64_t>(rules.check_every) == 0;
+std::string differs(JobId job, int strip) {
+	return "its pixels of strip " + std::to_string(strip) + " of job " + std::to_string(job) + " differ from two others'";
 }
+
+} // namespace
 
 bool Scheduler::complete(LeaseId id, PixelHash hash, Time now, Changes& changes) {
 	const Lease* found = lease(id);
@@ -33,47 +28,41 @@ bool Scheduler::complete(LeaseId id, PixelHash hash, Time now, Changes& changes)
 	JobState& j = job_states.at(lease.job);
 	j.seconds += now - lease.started;
 	++j.timed;
-	vote(j, lease.strip, lease.worker, hash, changes);
+	vote(j, lease.strip, lease.worker, hash, now, changes);
 	return true;
 }
 
-void Scheduler::restore_vote(JobId id, int strip, const WorkerId& who, PixelHash hash, bool settled, Changes& changes) {
-	JobState* j = job(id);
-	if (!j || strip < 0 || strip >= j->strips || j->state[static_cast<size_t>(strip)] == StripState::settled)
-		return;
-	for (; j->next <= strip; ++j->next)
-		j->returned.insert(j->next);
-	j->names.emplace(who, static_cast<int>(j->names.size()));
-	if (settled) {
-		settle(*j, strip, who, hash, changes);
-		return;
-	}
-	Trouble& t = j->trouble[strip];
-	t.needed = 2;
-	t.votes.push_back({who, hash});
-}
-
-void Scheduler::vote(JobState& j, int strip, const WorkerId& who, PixelHash hash, Changes& changes) {
+void Scheduler::vote(JobState& j, int strip, const WorkerId& who, PixelHash hash, Time now, Changes& changes) {
 	const auto at = static_cast<size_t>(strip);
 	if (j.state[at] == StripState::settled) {
 		// The second of two that were sent out, after the first.
-		if (j.result[at].hash == hash || j.result[at].worker < 0)
-			return;
 		const int first = j.result[at].worker;
+		if (first < 0) {
+			if (j.result[at].hash != hash)
+				set_aside(who, differs(j.id, strip), changes);
+			return;
+		}
 		const auto name = std::find_if(j.names.begin(), j.names.end(), [&](const auto& n) { return n.second == first; });
-		j.state[at] = StripState::waiting;
-		--j.settled;
-		if (j.stage == Stage::done)
-			j.stage = Stage::running;
-		Trouble& t = j.trouble[strip];
-		t.needed = 2;
-		t.votes.assign(1, Vote{name->first, j.result[at].hash});
-		changes.reopened.push_back({j.id, strip});
+		if (j.result[at].hash == hash) {
+			if (name->first == who)
+				return;
+			j.result[at].worker = -1;
+			j.names.emplace(who, static_cast<int>(j.names.size()));
+			for (const WorkerId& id : {who, name->first}) {
+				j.confirmed.insert(id);
+				j.asked.erase(id);
+			}
+			return;
+		}
+		const Vote other{name->first, j.result[at].hash};
+		reopen(j, strip, changes);
+		j.trouble[strip].votes.assign(1, other);
+		ask_another(j, strip, other.worker);
 	}
 	Trouble* t = j.trouble.count(strip) ? &j.trouble[strip] : nullptr;
-	if (wants_second(j, strip, who) && somebody_else(j, strip, who)) {
+	if (wants_second(j, strip, who) && somebody_else(j, strip, now, who)) {
+		ask_another(j, strip, who);
 		t = &j.trouble[strip];
-		t->needed = 2;
 	}
 	j.names.emplace(who, static_cast<int>(j.names.size()));
 	if (t) {
@@ -86,18 +75,19 @@ void Scheduler::vote(JobState& j, int strip, const WorkerId& who, PixelHash hash
 			return;
 		}
 	}
-	settle(j, strip, who, hash, changes);
+	settle(j, strip, who, hash, now, changes);
 }
 
-void Scheduler::settle(JobState& j, int strip, const WorkerId& who, PixelHash hash, Changes& changes) {
+void Scheduler::settle(JobState& j, int strip, const WorkerId& who, PixelHash hash, Time now, Changes& changes) {
 	const auto at = static_cast<size_t>(strip);
 	const auto found = j.trouble.find(strip);
 	const Trouble t = found == j.trouble.end() ? Trouble() : found->second;
 	j.trouble.erase(strip);
 	const auto agree = std::count_if(t.votes.begin(), t.votes.end(), [&](const Vote& v) { return v.hash == hash; });
 	j.returned.erase(strip);
-	if (strip >= j.next) // restored
-		j.next = strip + 1;
+	for (; j.next <= strip; ++j.next) // restored
+		if (j.next < strip)
+			j.returned.insert(j.next);
 	j.state[at] = StripState::settled;
 	j.result[at] = Settled{hash, agree >= 2 ? -1 : j.names.at(who)};
 	++j.settled;
@@ -112,19 +102,24 @@ void Scheduler::settle(JobState& j, int strip, const WorkerId& who, PixelHash ha
 		}
 	}
 	update_ready(j);
-	for (const Vote& v : t.votes)
+	for (const Vote& v : t.votes) {
+		j.asked.erase(v.worker);
 		if (v.hash != hash)
-			set_aside(v.worker,
-				"its pixels of strip " + std::to_string(strip) + " of job " + std::to_string(j.id) + " differ from two others'",
-				changes);
+			set_aside(v.worker, differs(j.id, strip), changes);
+		else if (agree >= 2)
+			j.confirmed.insert(v.worker);
+	}
 	for (const WorkerId& id : t.failed_by)
 		if (WorkerState* w = worker(id); w && w->aside.empty() && ++w->blame >= rules.blame)
 			set_aside(id, "it failed " + std::to_string(w->blame) + " strips that others rendered", changes);
-	check_done(j, changes);
+	check_done(j, now, changes);
 }
 
-void Scheduler::check_done(JobState& j, Changes& changes) {
+void Scheduler::check_done(JobState& j, Time now, Changes& changes) {
 	if (j.settled < j.strips || j.stage == Stage::done || j.stage == Stage::cancelled)
+		return;
+	doubt(j, false, now, changes);
+	if (j.settled < j.strips)
 		return;
 	j.stage = Stage::done;
 	while (!j.out.empty()) {
@@ -136,43 +131,6 @@ void Scheduler::check_done(JobState& j, Changes& changes) {
 	}
 	update_ready(j);
 	changes.done.push_back(j.id);
-}
-
-void Scheduler::set_aside(const WorkerId& id, const std::string& why, Changes& changes) {
-	WorkerState* w = worker(id);
-	if (w && !w->aside.empty())
-		return;
-	if (w) {
-		w->aside = why;
-		const auto held = w->leases;
-		for (const LeaseId l : held) {
-			changes.ended.push_back(lease_states.at(l));
-			give_back(l);
-		}
-	}
-	changes.aside.emplace_back(id, why);
-	if (why.rfind("its pixels", 0) != 0)
-		return;
-	// What rests on its word alone is asked again.
-	for (auto& [job_id, j] : job_states) {
-		const auto name = j.names.find(id);
-		if (name == j.names.end() || j.stage == Stage::cancelled)
-			continue;
-		for (int s = 0; s < j.strips; ++s) {
-			const auto at = static_cast<size_t>(s);
-			if (j.state[at] == StripState::settled && j.result[at].worker == name->second) {
-				j.state[at] = StripState::waiting;
-				--j.settled;
-				if (j.stage == Stage::done)
-					j.stage = Stage::running;
-				release(j, s);
-				changes.reopened.push_back({j.id, s});
-			}
-		}
-		for (auto& [strip, t] : j.trouble)
-			t.votes.erase(
-				std::remove_if(t.votes.begin(), t.votes.end(), [&](const Vote& v) { return v.worker == id; }), t.votes.end());
-	}
 }
 
 bool Scheduler::fail(LeaseId id, Time now, Changes& changes) {
@@ -191,7 +149,13 @@ bool Scheduler::fail(LeaseId id, Time now, Changes& changes) {
 		return true;
 	Trouble& t = j.trouble[lease.strip];
 	t.failed_by.insert(lease.worker);
-	if (++t.failures < rules.tries) {
+	++t.failures;
+	// Three tries on as many workers, or by whoever there is; while others that have worked on this job are away, they are
+	// waited for.
+	const auto same_one = [&](const auto& n) { return t.failed_by.count(n.first) > 0; };
+	const bool others = !std::all_of(j.names.begin(), j.names.end(), same_one);
+	if (t.failures < rules.tries ||
+		(others && static_cast<int>(t.failed_by.size()) < rules.tries && t.failures < 4 * rules.tries)) {
 		release(j, lease.strip);
 		return true;
 	}
@@ -207,13 +171,6 @@ void Scheduler::give_up(JobState& j, int strip, Changes& changes) {
 	j.given_up = strip;
 	update_ready(j);
 	changes.given_up.push_back({j.id, strip});
-}
-
-void Scheduler::restore_failed(JobId id) {
-	if (JobState* j = job(id)) {
-		j->stage = Stage::failed;
-		update_ready(*j);
-	}
 }
 
 void Scheduler::tick(Time now, Changes& changes) {
@@ -250,7 +207,7 @@ void Scheduler::tick(Time now, Changes& changes) {
 		std::vector<std::pair<int, Vote>> enough;
 		std::vector<int> split;
 		for (auto& [strip, t] : j.trouble) {
-			if (t.votes.empty() || j.out.count(strip) || somebody_else(j, strip)) {
+			if (t.votes.empty() || j.out.count(strip) || somebody_else(j, strip, now)) {
 				t.since = -1;
 				continue;
 			}
@@ -265,9 +222,13 @@ void Scheduler::tick(Time now, Changes& changes) {
 				split.push_back(strip);
 		}
 		for (const auto& [strip, v] : enough)
-			settle(j, strip, v.worker, v.hash, changes);
-		for (const int strip : split)
+			settle(j, strip, v.worker, v.hash, now, changes);
+		for (const int strip : split) {
+			for (const Vote& v : j.trouble[strip].votes)
+				changes.split[job_id].push_back(v.worker);
 			give_up(j, strip, changes);
+		}
+		doubt(j, true, now, changes);
 	}
 }
 

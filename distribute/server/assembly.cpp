@@ -57,6 +57,7 @@ void Farm::strip_settled(JobId id, int strip) {
 }
 
 Awaitable<void> Farm::assemble() {
+	std::map<JobId, std::string> said; // once, not at each try
 	while (true) {
 		if (to_stitch.empty()) {
 			stitch_bell = std::make_shared<Bell>(context);
@@ -71,13 +72,18 @@ Awaitable<void> Farm::assemble() {
 			else
 				co_await finish(id);
 		} catch (const std::exception& e) {
-			say("job " + std::to_string(id) + ": " + e.what() + "; trying again");
 			again = all_jobs.count(id) > 0;
+			std::string& told = said[id];
+			if (again && told != e.what())
+				say("job " + std::to_string(id) + ": " + e.what() + "; trying again until it works");
+			told = e.what();
 			if (again)
-				all_jobs.at(id).doing = e.what();
+				all_jobs.at(id).doing = told;
 			events.job(id);
 		}
 		to_stitch.pop_front();
+		if (!again)
+			said.erase(id);
 		if (again) { // a full disk has to be emptied by somebody
 			to_stitch.emplace_back(id, index);
 			auto pause = std::make_shared<Bell>(context);
@@ -95,17 +101,27 @@ Awaitable<void> Farm::stitch_frame(JobId id, int index) {
 	const auto strips = strip_files(found->second, index);
 	const fs::path part = spool.fresh(), whole = spool.frame(id, spec.picture(spec.frame(index)));
 	auto work = [=] {
-		stitch(spec, strips, part);
-		move_durably(part, whole);
+		try {
+			stitch(spec, strips, part);
+			move_durably(part, whole);
+		} catch (...) { // what is half done takes room
+			std::error_code ignored;
+			fs::remove(part, ignored);
+			throw;
+		}
 	};
 	co_await in_pool(context, pool, std::move(work));
 	// One of its strips may have been called into question meanwhile.
-	if (!ready() || strip_files(all_jobs.at(id), index) != strips)
+	const auto same = [&] { return ready() && strip_files(all_jobs.at(id), index) == strips; };
+	if (!same())
 		co_return;
 	Ledger::Work note_it = [=](Database& db) { rows::set_frame(db, id, index, true); };
 	co_await commit(std::move(note_it));
-	if (!ready())
+	if (!same()) {
+		std::error_code ignored;
+		fs::remove(whole, ignored);
 		co_return;
+	}
 	Job& job = all_jobs.at(id);
 	job.stitched[static_cast<size_t>(index)] = true;
 	job.doing.clear();
@@ -130,17 +146,22 @@ Awaitable<void> Farm::finish(JobId id) {
 			pictures.push_back(spool.frame(id, spec.picture(spec.frame(i))));
 		const fs::path film = spool.frame(id, spec.name + ".mp4");
 		// The frames are what was promised; without ffmpeg the job is done all the same, and says so.
-		auto work = [=] { make_film(pictures, spec.film_rate, film); };
+		auto work = [=, this] { make_film(pictures, spec.film_rate, film, spool.incoming()); };
 		try {
 			co_await in_pool(context, pool, std::move(work));
 		} catch (const Error& e) {
+			if (e.disk_full())
+				throw;
 			remark = e.what();
 		}
 	}
 	if (!all_jobs.count(id) || all_jobs.at(id).frames_done < spec.frames())
 		co_return;
 	const double ended = wall_time();
-	Ledger::Work work = [=](Database& db) { rows::set_stage(db, id, Stage::done, remark, ended); };
+	Ledger::Work work = [=](Database& db) {
+		rows::set_stage(db, id, Stage::done, remark, ended);
+		rows::end_leases(db, id);
+	};
 	co_await commit(std::move(work));
 	if (!all_jobs.count(id))
 		co_return;
@@ -149,10 +170,7 @@ Awaitable<void> Farm::finish(JobId id) {
 	Changes changes;
 	scheduler.forget_job(id, changes);
 	apply(changes);
-	auto clear = [this, id] {
-		std::error_code ignored;
-		fs::remove_all(spool.job(id) / "strips", ignored);
-	};
+	auto clear = [this, id] { spool.remove_strips(id); };
 	co_await in_pool(context, pool, clear);
 }
 

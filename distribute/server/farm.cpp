@@ -50,92 +50,50 @@ Farm::~Farm() {
 	pool.join();
 }
 
-void Farm::enter(const JobRow& row) {
-	Job& job = all_jobs[row.id];
-	job.row = row;
-	job.stitched.assign(static_cast<size_t>(row.spec.frames()), false);
-	if (row.stage == Stage::done) {
-		job.stitched.assign(job.stitched.size(), true);
-		job.frames_done = row.spec.frames();
-	} else if (row.stage != Stage::cancelled) {
-		scheduler.add_job(row.id, row.spec.strips(), row.spec.priority);
-		spool.make_job(row.id);
-	}
-}
-
-void Farm::restore() {
-	Changes nothing_new;
-	for (const JobRow& row : ledger.jobs()) {
-		enter(row);
-		if (!scheduler.jobs().count(row.id))
-			continue;
-		for (const ReportRow& report : ledger.reports(row.id)) {
-			const PixelHash hash = std::stoull(report.pixels.substr(0, 16), nullptr, 16);
-			if (fs::exists(spool.strip(row.id, report.strip, report.pixels, row.spec.suffix())))
-				scheduler.restore_vote(row.id, report.strip, report.worker, hash, report.settled, nothing_new);
-		}
-		if (row.stage == Stage::failed)
-			scheduler.restore_failed(row.id);
-		scheduler.set_paused(row.id, row.stage == Stage::paused);
-	}
-	for (const Lease& lease : ledger.leases())
-		scheduler.restore_lease(lease, now());
-	for (const auto& [id, frame] : ledger.frames()) {
-		const auto job = all_jobs.find(id);
-		if (job == all_jobs.end() || job->second.row.stage == Stage::done)
-			continue;
-		const auto index = static_cast<size_t>(frame);
-		if (index < job->second.stitched.size() &&
-			fs::exists(spool.frame(id, job->second.row.spec.picture(job->second.row.spec.frame(frame))))) {
-			job->second.stitched[index] = true;
-			++job->second.frames_done;
-		}
-	}
-	for (const auto& [id, job] : all_jobs) {
-		if (!scheduler.jobs().count(id))
-			continue;
-		for (int i = 0; i < job.row.spec.frames(); ++i)
-			if (!job.stitched[static_cast<size_t>(i)] && frame_complete(job, i))
-				to_stitch.emplace_back(id, i);
-		if (job.frames_done == job.row.spec.frames())
-			to_stitch.emplace_back(id, -1);
-	}
-}
-
 namespace {
 
-/// Waits until what `start` begins has told its end; throws HttpError 507 if that was a bad one.
-template <class Start> Awaitable<void> written(boost::asio::io_context& context, const Start& start) {
+/// Waits until what `start` begins has told its end, and tells the farm; throws HttpError 507 if that was a bad one.
+template <class Start> Awaitable<void> written(Farm& farm, const Start& start) {
 	auto error = std::make_shared<std::string>();
-	auto bell = std::make_shared<Bell>(context);
+	auto bell = std::make_shared<Bell>(farm.io());
 	start([error, bell](const std::string& what) {
 		*error = what;
 		bell->ring();
 	});
 	co_await bell->wait();
 	if (!error->empty()) {
-		say(*error);
+		farm.complain(*error);
 		throw HttpError(507, *error);
 	}
+	farm.complain("");
 }
 
 } // namespace
 
 Awaitable<void> Farm::commit(Ledger::Work work) {
 	const auto start = [this, &work](Ledger::Done done) { ledger.post(std::move(work), std::move(done)); };
-	co_await written(context, start);
+	co_await written(*this, start);
 }
 
 Awaitable<void> Farm::move(fs::path from, fs::path to) {
 	const auto start = [this, &from, &to](Mover::Done done) { mover.move(from, to, std::move(done)); };
-	co_await written(context, start);
+	co_await written(*this, start);
 }
 
 void Farm::note(Ledger::Work work) {
-	ledger.post(std::move(work), [](const std::string& error) {
+	ledger.post(std::move(work), [this](const std::string& error) {
 		if (!error.empty())
-			say(error);
+			boost::asio::post(context, [this, error] { complain(error); });
 	});
+}
+
+// A full disk is told of once, and that it is over once.
+void Farm::complain(const std::string& what) {
+	if (what.empty() && !complaint.empty())
+		say("the spool takes what is written again");
+	else if (!what.empty() && complaint.empty())
+		say(what + "; what comes is turned away until that is mended, and comes again");
+	complaint = what;
 }
 
 const Job& Farm::job(JobId id) const {
@@ -179,19 +137,26 @@ Awaitable<void> Farm::pause(JobId id, bool paused) {
 	Ledger::Work work = [=](Database& db) { rows::set_stage(db, id, to, "", 0); };
 	co_await commit(std::move(work));
 	scheduler.set_paused(id, paused);
-	set_stage(all_jobs.at(id), to);
+	if (all_jobs.count(id))
+		set_stage(all_jobs.at(id), to);
 	wake(scheduler.waiting());
 }
 
 Awaitable<void> Farm::cancel(JobId id) {
 	if (job(id).row.stage == Stage::done)
 		throw HttpError(409, "job " + std::to_string(id) + " is done");
-	Ledger::Work work = [=](Database& db) { rows::set_stage(db, id, Stage::cancelled, "", wall_time()); };
+	Ledger::Work work = [=](Database& db) {
+		rows::set_stage(db, id, Stage::cancelled, "", wall_time());
+		rows::end_leases(db, id);
+	};
 	co_await commit(std::move(work));
 	Changes changes;
 	scheduler.forget_job(id, changes);
 	apply(changes);
-	set_stage(all_jobs.at(id), Stage::cancelled);
+	if (all_jobs.count(id))
+		set_stage(all_jobs.at(id), Stage::cancelled);
+	auto clear = [this, id] { spool.remove_strips(id); };
+	co_await in_pool(context, pool, clear);
 }
 
 Awaitable<void> Farm::retry(JobId id) {
@@ -205,19 +170,23 @@ Awaitable<void> Farm::retry(JobId id) {
 	};
 	co_await commit(std::move(work));
 	scheduler.retry(id);
-	set_stage(all_jobs.at(id), Stage::running);
+	if (all_jobs.count(id))
+		set_stage(all_jobs.at(id), Stage::running);
 	wake(scheduler.waiting());
 }
 
 Awaitable<void> Farm::remove(JobId id) {
 	job(id);
+	auto clear = [this, id] { spool.remove_job(id); };
+	// On a full disk the ledger cannot even note that something goes: the files make room first.
+	if (!complaint.empty())
+		co_await in_pool(context, pool, clear);
 	Ledger::Work work = [=](Database& db) { rows::remove_job(db, id); };
 	co_await commit(std::move(work));
 	Changes changes;
 	scheduler.forget_job(id, changes);
 	apply(changes);
 	all_jobs.erase(id);
-	auto clear = [this, id] { spool.remove_job(id); };
 	co_await in_pool(context, pool, clear);
 	events.job(id);
 }
@@ -230,6 +199,15 @@ std::string Farm::place(const JobSpec& spec, int strip) const {
 	return frame.empty() && rows.empty() ? "the picture" : frame + (frame.empty() || rows.empty() ? "" : ", ") + rows;
 }
 
+std::string Farm::names_of(const std::vector<WorkerId>& workers) const {
+	std::string names;
+	for (const WorkerId& id : workers) {
+		const auto guest = all_guests.find(id);
+		names += (names.empty() ? "" : " and ") + (guest == all_guests.end() ? id : guest->second.hello.name);
+	}
+	return names;
+}
+
 void Farm::apply(const Changes& changes) {
 	for (const Lease& lease : changes.ended) {
 		note([id = lease.id](Database& db) { rows::end_lease(db, id); });
@@ -239,6 +217,9 @@ void Farm::apply(const Changes& changes) {
 		note([s](Database& db) { rows::set_settled(db, s.job, s.strip, ""); });
 		Job& job = all_jobs.at(s.job);
 		const int index = s.strip / job.row.spec.strips_per_frame();
+		// The picture goes at once: should the row outlive it, it counts for nothing.
+		std::error_code ignored;
+		fs::remove(spool.frame(s.job, job.row.spec.picture(job.row.spec.frame(index))), ignored);
 		if (job.stitched[static_cast<size_t>(index)]) {
 			job.stitched[static_cast<size_t>(index)] = false;
 			--job.frames_done;
@@ -251,6 +232,7 @@ void Farm::apply(const Changes& changes) {
 	for (const auto& [worker, why] : changes.aside) {
 		const auto guest = all_guests.find(worker);
 		say("worker " + (guest == all_guests.end() ? worker : guest->second.hello.name) + " is set aside: " + why);
+		note([=, id = worker, because = why, at = wall_time()](Database& db) { rows::set_aside(db, id, because, at); });
 		events.worker(worker);
 	}
 	for (const WorkerId& worker : changes.gone) {
@@ -264,11 +246,23 @@ void Farm::apply(const Changes& changes) {
 	}
 	for (const StripRef& s : changes.given_up) {
 		Job& job = all_jobs.at(s.job);
-		std::string line = "no worker could";
-		for (const FailureRow& f : ledger.failures(s.job))
-			line = f.strip == s.strip ? f.line : line;
-		set_stage(job, Stage::failed,
-			place(job.row.spec, s.strip) + " failed on " + std::to_string(settings.rules.tries) + " tries: " + line);
+		const auto split = changes.split.find(s.job);
+		if (split != changes.split.end()) {
+			set_stage(job, Stage::failed,
+				place(job.row.spec, s.strip) + " came out differently on " + names_of(split->second) +
+					": with one more worker, 'retry' finds out which is right");
+		} else {
+			std::string line = "workers that had it fell silent";
+			int tries = 0;
+			for (const FailureRow& f : ledger.failures(s.job))
+				if (f.strip == s.strip) {
+					line = f.line;
+					++tries;
+				}
+			set_stage(job, Stage::failed,
+				place(job.row.spec, s.strip) + " failed on " + std::to_string(tries > 0 ? tries : settings.rules.losses) +
+					" tries: " + line);
+		}
 		say("job " + std::to_string(s.job) + " failed: " + job.row.error);
 	}
 	if (!changes.ended.empty() || !changes.reopened.empty())

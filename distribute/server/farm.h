@@ -84,10 +84,14 @@ public:
 	boost::asio::thread_pool& threads() { return pool; }
 	boost::asio::io_context& io() { return context; }
 	Time now() const;
+	/// What keeps the spool from being written; empty: nothing does.
+	void complain(const std::string& what);
 	const Rules& rules() const { return settings.rules; }
 
 private:
+	// restore.cpp
 	void restore();
+	void restore_strips(const JobRow& row, Changes& changes);
 	/// Waits until it is on the disk; throws HttpError 507 if it cannot be.
 	Awaitable<void> commit(Ledger::Work work);
 	/// Likewise for a file that is written and has to get to its place.
@@ -95,8 +99,10 @@ private:
 	/// Does not wait: for what may be lost.
 	void note(Ledger::Work work);
 	void apply(const Changes& changes);
+	std::string names_of(const std::vector<WorkerId>& workers) const;
 	void wake(int how_many);
 	Awaitable<void> keep_house();
+	Awaitable<void> remove_old(JobId job);
 	void enter(const JobRow& row);
 	void set_stage(Job& job, Stage stage, const std::string& error = "");
 	std::string place(const JobSpec& spec, int strip) const;
@@ -122,6 +128,7 @@ private:
 	std::deque<std::shared_ptr<Bell>> sleepers;  // long polls, the longest waiting first
 	std::deque<std::pair<JobId, int>> to_stitch; // frame index; -1: finish the job
 	std::shared_ptr<Bell> stitch_bell;
+	std::string complaint;
 };
 
 /// Seconds since 1970.

@@ -22,14 +22,16 @@ void Farm::welcome(const Hello& hello, const std::string& from) {
 		break;
 	}
 	Guest& guest = all_guests[hello.id];
+	scheduler.add_worker(hello.id, hello.slots, now(), false);
 	if (guest.hello.id.empty()) {
 		guest.since = wall_time();
+		if (const std::string& why = scheduler.workers().at(hello.id).aside; !why.empty())
+			say("worker " + hello.name + " is set aside: " + why);
 		say("worker " + hello.name + " from " + from + " has " + std::to_string(hello.slots) +
 			(hello.slots == 1 ? " slot" : " slots"));
 	}
 	guest.hello = hello;
 	guest.from = from;
-	scheduler.add_worker(hello.id, hello.slots, now(), false);
 	events.worker(hello.id);
 }
 
@@ -144,12 +146,17 @@ Awaitable<std::string> Farm::report(LeaseId id, fs::path file, std::string sha25
 		co_return co_await failed(id, std::move(failure));
 	}
 	co_await move(file, spool.strip(lease.job, lease.strip, checked.pixels, spec.suffix()));
+	// The ledger is the fence: of two reports that come at once it takes one.
 	const ReportRow report{lease.job, lease.strip, lease.worker, checked.pixels, seconds, false};
+	auto held = std::make_shared<bool>(false);
 	Ledger::Work work = [=](Database& db) {
-		rows::add_report(db, report);
-		rows::end_lease(db, id);
+		*held = rows::end_lease(db, id);
+		if (*held)
+			rows::add_report(db, report);
 	};
 	co_await commit(std::move(work));
+	if (!*held)
+		co_return "lease " + std::to_string(id) + " has ended";
 	Changes changes;
 	const bool taken = scheduler.complete(id, std::stoull(checked.pixels.substr(0, 16), nullptr, 16), now(), changes);
 	apply(changes);
@@ -167,8 +174,8 @@ Awaitable<std::string> Farm::failed(LeaseId id, Failure failure) {
 	say("job " + std::to_string(lease.job) + ", " + place(job(lease.job).row.spec, lease.strip) + " failed on " + name + ": " +
 		failure.line);
 	Ledger::Work work = [=](Database& db) {
-		rows::add_failure(db, {lease.job, lease.strip, name, wall_time(), failure.line, failure.log});
-		rows::end_lease(db, id);
+		if (rows::end_lease(db, id))
+			rows::add_failure(db, {lease.job, lease.strip, name, wall_time(), failure.line, failure.log});
 	};
 	co_await commit(std::move(work));
 	Changes changes;

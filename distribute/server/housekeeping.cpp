@@ -14,6 +14,15 @@ constexpr double patience = day;
 
 } // namespace
 
+// It may be gone meanwhile, or the disk too full even for that: the next round tries again.
+Awaitable<void> Farm::remove_old(JobId id) {
+	try {
+		co_await remove(id);
+	} catch (const std::exception& e) {
+		say(std::string("while cleaning the spool: ") + e.what());
+	}
+}
+
 Awaitable<void> Farm::keep_house() {
 	while (true) {
 		std::vector<const Job*> ended;
@@ -28,16 +37,16 @@ Awaitable<void> Farm::keep_house() {
 		for (const JobId id : old) {
 			say("job " + std::to_string(id) + " is removed: it ended " + std::to_string(static_cast<int>(settings.keep_days)) +
 				" days ago");
-			co_await remove(id);
+			co_await remove_old(id);
 		}
 		auto measure = [this] { return spool.bytes(); };
 		for (const JobId id : others) {
 			if (settings.keep_bytes <= 0 || static_cast<double>(co_await in_pool(context, pool, measure)) <= settings.keep_bytes)
 				break;
 			say("job " + std::to_string(id) + " is removed: the spool is larger than it may be");
-			if (all_jobs.count(id))
-				co_await remove(id);
+			co_await remove_old(id);
 		}
+		note([before = wall_time() - settings.keep_days * day](Database& db) { rows::forget_aside(db, before); });
 		for (const auto& [id, job] : all_jobs)
 			bundles.insert(job.row.spec.bundle);
 		auto sweep = [this, bundles] { spool.sweep(bundles, patience); };

@@ -53,9 +53,10 @@ int serve(const Arguments& arguments) {
 	FarmSettings settings;
 	settings.spool = arguments.get("--spool").empty() ? state_folder() / "spool" : fs::path(arguments.get("--spool"));
 	settings.rules.lease = static_cast<double>(arguments.number("--lease", 1, 86400));
+	settings.rules.lease_gap = 1 << 16;
 	settings.rules.check_every = static_cast<int>(arguments.number("--check-every", 0, 1000000));
-	settings.keep_days = static_cast<double>(arguments.number("--keep-days", 0, 100000));
-	settings.keep_bytes = 1e9 * static_cast<double>(arguments.number("--keep-gb", 0, 1000000));
+	settings.keep_days = arguments.real("--keep-days", 0, 100000);
+	settings.keep_bytes = 1e9 * arguments.real("--keep-gb", 0, 1000000);
 	ServerSettings http;
 	http.header_seconds = static_cast<double>(arguments.number("--idle", 1, 86400));
 	http.door = std::make_shared<Door>(read_tokens(arguments.get("--token-file")));
@@ -93,6 +94,7 @@ int serve(const Arguments& arguments) {
 	add_bundle_routes(router, farm);
 	add_watch_routes(router, farm);
 	add_page_routes(router, *http.door);
+	http.full = [&farm](const std::string& what) { farm.complain(what); };
 	http.fresh_file = [&farm] { return farm.files().fresh(); };
 	http.write_file = [&farm](const fs::path& file, const std::string& body) -> Awaitable<void> {
 		const auto write = [&file, &body] { return write_file(file, body); };

@@ -11,6 +11,8 @@
 #include <ImfOutputFile.h>
 
 #include <array>
+#include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <map>
 
@@ -146,7 +148,8 @@ template <class Function> auto guarded(const Path& path, Function function) {
 	} catch (const Error&) {
 		throw;
 	} catch (const std::exception& e) {
-		throw Error(path.string() + ": " + shown(e.what()));
+		const std::string why = e.what();
+		throw Error(path.string() + ": " + shown(why), why.find(std::strerror(ENOSPC)) == std::string::npos ? 0 : ENOSPC);
 	}
 }
 

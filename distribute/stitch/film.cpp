@@ -5,13 +5,21 @@
 #include "distribute/common/files.h"
 #include "distribute/common/process.h"
 
+#include <cerrno>
+#include <cstring>
 #include <iomanip>
 #include <sstream>
 
 namespace farm {
+namespace {
 
-void make_film(const std::vector<fs::path>& pictures, double rate, const fs::path& film) {
-	const ScratchFolder scratch(film.parent_path());
+/// Bytes; with fewer left, it is for want of room that ffmpeg failed.
+constexpr std::uintmax_t least_room = 1 << 20;
+
+} // namespace
+
+void make_film(const std::vector<fs::path>& pictures, double rate, const fs::path& film, const fs::path& work) {
+	const ScratchFolder scratch(work);
 	// Links in a folder of their own count through, whatever the pictures' names are.
 	const std::string suffix = pictures.at(0).extension().string();
 	for (size_t i = 0; i < pictures.size(); ++i) {
@@ -31,7 +39,13 @@ void make_film(const std::vector<fs::path>& pictures, double rate, const fs::pat
 	command.log = log;
 	const int code = run(command);
 	if (code != 0) {
-		std::istringstream lines(fs::exists(log) ? read_file(log) : "");
+		// On a full disk there is none for ffmpeg's complaint either.
+		std::error_code unknown;
+		const auto room = fs::space(scratch.path(), unknown).available;
+		const std::string said = fs::exists(log) ? read_file(log) : "";
+		if (said.find(std::strerror(ENOSPC)) != std::string::npos || (!unknown && room < least_room))
+			throw Error("cannot write " + film.string() + ": " + std::strerror(ENOSPC), ENOSPC);
+		std::istringstream lines(said);
 		std::string last;
 		for (std::string line; std::getline(lines, line);)
 			last = line.empty() ? last : line;

@@ -9,8 +9,10 @@
 namespace farm {
 
 /// Encodes pictures in order, at `rate` a second, as H.264 in the file's container (.mp4, .mkv, ...). Every player takes it:
-/// yuv420p, an even size (a black line makes up for an odd one). Throws Error with ffmpeg's last line.
-void make_film(const std::vector<std::filesystem::path>& pictures, double rate, const std::filesystem::path& film);
+/// yuv420p, an even size (a black line makes up for an odd one). Works in a folder below `work`, on the film's own disk. Throws
+/// Error with ffmpeg's last line, or one that says that the disk is full.
+void make_film(const std::vector<std::filesystem::path>& pictures, double rate, const std::filesystem::path& film,
+	const std::filesystem::path& work);
 
 /// Whether ffmpeg is there.
 bool can_film();

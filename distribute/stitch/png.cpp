@@ -19,7 +19,10 @@ using Row = std::vector<png_byte>;
 
 // libpng lets an error function leave by an exception (libpng-manual, "Error handling").
 [[noreturn]] void fail(png_structp png, png_const_charp message) {
-	throw Error(*static_cast<const std::string*>(png_get_error_ptr(png)) + ": " + message);
+	const std::string& name = *static_cast<const std::string*>(png_get_error_ptr(png));
+	if (std::string_view(message) == "Write Error") // the system's own reason is better
+		throw system_error("cannot write " + name);
+	throw Error(name + ": " + message);
 }
 void hush(png_structp, png_const_charp) {}
 

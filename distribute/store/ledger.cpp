@@ -10,7 +10,7 @@
 namespace farm {
 namespace {
 
-constexpr int ledger_version = 1;
+constexpr int ledger_version = 2;
 
 const char* const schema = R"(
 CREATE TABLE job(id INTEGER PRIMARY KEY AUTOINCREMENT, client_key TEXT, spec TEXT NOT NULL, stage INTEGER NOT NULL DEFAULT 0,
@@ -24,6 +24,7 @@ CREATE TABLE failure(job INTEGER NOT NULL REFERENCES job ON DELETE CASCADE, stri
 	at REAL NOT NULL, line TEXT NOT NULL, log TEXT NOT NULL);
 CREATE INDEX failure_job ON failure(job);
 CREATE TABLE frame(job INTEGER NOT NULL REFERENCES job ON DELETE CASCADE, frame INTEGER NOT NULL, PRIMARY KEY(job, frame));
+CREATE TABLE aside(worker TEXT PRIMARY KEY, why TEXT NOT NULL, at REAL NOT NULL);
 CREATE TABLE meta(epoch INTEGER NOT NULL);
 INSERT INTO meta VALUES(0);
 )";
@@ -156,14 +157,22 @@ std::vector<std::pair<JobId, int>> Ledger::frames() {
 	return all;
 }
 
-// Ids of this run start at epoch * 2^32: no need to write each one down before it is used.
+std::vector<std::pair<WorkerId, std::string>> Ledger::aside() {
+	std::vector<std::pair<WorkerId, std::string>> all;
+	Statement s(*reading, "SELECT worker, why FROM aside");
+	while (s.step())
+		all.emplace_back(s.text(0), s.text(1));
+	return all;
+}
+
+// Ids of this run start at epoch * 2^42: no need to write each one down before it is used.
 LeaseId Ledger::next_lease() {
 	LeaseId next = 0;
 	write([&](Database& db) {
 		Statement(db, "UPDATE meta SET epoch = epoch + 1").run();
 		Statement s(db, "SELECT epoch FROM meta");
 		s.step();
-		next = (s.integer(0) << 32) + 1;
+		next = (s.integer(0) << 42) + 1;
 	});
 	return next;
 }

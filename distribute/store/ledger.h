@@ -66,7 +66,8 @@ public:
 	std::vector<JobRow> jobs();
 	std::vector<ReportRow> reports(JobId job);
 	std::vector<Lease> leases();
-	std::vector<std::pair<JobId, int>> frames(); ///< those stitched
+	std::vector<std::pair<JobId, int>> frames();           ///< those stitched
+	std::vector<std::pair<WorkerId, std::string>> aside(); ///< workers set aside, and why
 	/// A number above any lease's id so far.
 	LeaseId next_lease();
 
@@ -98,13 +99,17 @@ JobId add_job(Database& db, const JobSpec& spec, double now); ///< or the id of 
 void set_stage(Database& db, JobId job, Stage stage, const std::string& error, double now);
 void remove_job(Database& db, JobId job);
 void add_lease(Database& db, const Lease& lease);
-void end_lease(Database& db, LeaseId lease);
+/// False if it had ended before: whatever was to be done under it must not be.
+bool end_lease(Database& db, LeaseId lease);
+void end_leases(Database& db, JobId job);
 void add_report(Database& db, const ReportRow& row);
 /// Those reports of the strip whose pixels' hash starts with these 16 digits; none of them if `pixels` is empty.
 void set_settled(Database& db, JobId job, int strip, const std::string& pixels);
 void remove_report(Database& db, JobId job, int strip, const WorkerId& worker);
 void add_failure(Database& db, const FailureRow& row);
 void clear_failures(Database& db, JobId job);
+void set_aside(Database& db, const WorkerId& worker, const std::string& why, double now);
+void forget_aside(Database& db, double before); ///< those set aside before then
 void set_frame(Database& db, JobId job, int frame, bool stitched);
 } // namespace rows
 

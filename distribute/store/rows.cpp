@@ -33,9 +33,15 @@ void add_lease(Database& db, const Lease& lease) {
 	(s << lease.id << lease.job << lease.strip << lease.worker).run();
 }
 
-void end_lease(Database& db, LeaseId lease) {
+bool end_lease(Database& db, LeaseId lease) {
 	Statement s(db, "DELETE FROM lease WHERE id = ?");
 	(s << lease).run();
+	return db.changed() > 0;
+}
+
+void end_leases(Database& db, JobId job) {
+	Statement s(db, "DELETE FROM lease WHERE job = ?");
+	(s << job).run();
 }
 
 void add_report(Database& db, const ReportRow& row) {
@@ -63,6 +69,16 @@ void add_failure(Database& db, const FailureRow& row) {
 void clear_failures(Database& db, JobId job) {
 	Statement s(db, "DELETE FROM failure WHERE job = ?");
 	(s << job).run();
+}
+
+void set_aside(Database& db, const WorkerId& worker, const std::string& why, double now) {
+	Statement s(db, "INSERT OR REPLACE INTO aside(worker, why, at) VALUES(?, ?, ?)");
+	(s << worker << why << now).run();
+}
+
+void forget_aside(Database& db, double before) {
+	Statement s(db, "DELETE FROM aside WHERE at < ?");
+	(s << before).run();
 }
 
 void set_frame(Database& db, JobId job, int frame, bool stitched) {

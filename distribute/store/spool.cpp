@@ -55,6 +55,18 @@ void Spool::remove_job(JobId id) const {
 	fs::remove_all(job(id), ignored);
 }
 
+void Spool::remove_strips(JobId id) const {
+	std::error_code ignored;
+	fs::remove_all(job(id) / "strips", ignored);
+}
+
+void Spool::keep_strips(JobId id, const std::set<std::string>& names) const {
+	std::error_code ignored;
+	for (const auto& entry : fs::directory_iterator(job(id) / "strips", ignored))
+		if (!names.count(entry.path().filename()))
+			fs::remove(entry.path(), ignored);
+}
+
 std::int64_t Spool::bytes() const {
 	std::int64_t sum = 0;
 	std::error_code ignored;

@@ -47,6 +47,10 @@ public:
 	fs::path strip(JobId id, int strip, const std::string& pixels, const std::string& suffix) const;
 	fs::path frame(JobId id, const std::string& picture) const { return job(id) / "frames" / picture; }
 	void remove_job(JobId id) const;
+	/// Its strips, when they are no longer needed.
+	void remove_strips(JobId id) const;
+	/// Removes strips' files that are not among these names.
+	void keep_strips(JobId id, const std::set<std::string>& names) const;
 
 	/// What all of it takes on the disk.
 	std::int64_t bytes() const;

@@ -22,12 +22,15 @@ void Worker::let_go(std::int64_t lease) {
 
 void Worker::insist(std::int64_t lease, const std::function<json()>& ask) {
 	Backoff backoff;
+	std::string said;
 	for (int refused = 0; !lost(lease);) {
 		try {
 			ask();
 			return;
 		} catch (const Refused& e) {
-			say("lease " + std::to_string(lease) + ": " + e.what());
+			if (said != e.what())
+				say("lease " + std::to_string(lease) + ": " + e.what());
+			said = e.what();
 			// What the server cannot do now it may do later; what it will not do once more is not worth a third time.
 			if (e.status < 500 && e.status != 401 && ++refused > 5)
 				return;
@@ -58,18 +61,24 @@ std::shared_ptr<Worker::Finished> Worker::work_on(Client& client, const Task& ta
 			settings.renderer, task, root, folder, inside, [&] { return lost(task.lease) || (stopping && give_up_now()); });
 		if (done.given_up && lost(task.lease))
 			return nullptr; // somebody else has done it
-		if (done.given_up) {
-			client.post(back, json::object());
-			return nullptr;
-		}
-		if (done.not_started) {
-			pause(1);
+		if (done.given_up || done.not_started) {
+			if (done.not_started)
+				pause(1);
 			insist(task.lease, [&] { return client.post(back, json::object()); });
 			return nullptr;
 		}
-		if (!done.picture.empty())
+		if (!done.picture.empty()) {
+			unwell = false;
 			return finished;
-		fail(client, task, done.failure);
+		}
+		fail_or_beg_off(client, task, finished->scratch.path(), done.failure);
+	} catch (const Error& e) {
+		if (e.number)
+			beg_off(client, task, e.what());
+		else
+			fail(client, task, {e.what(), ""});
+	} catch (const fs::filesystem_error& e) {
+		beg_off(client, task, e.what());
 	} catch (const std::exception& e) {
 		fail(client, task, {e.what(), ""});
 	}
@@ -87,8 +96,31 @@ void Worker::deliver(Client& client, const Finished& f) {
 							   "&seconds=" + std::to_string(f.rendered.seconds);
 		insist(task.lease, [&] { return client.put_file(to, strip); });
 	} catch (const std::exception& e) {
-		fail(client, f.task, {e.what(), ""});
+		fail_or_beg_off(client, f.task, f.scratch.path(), {e.what(), ""});
 	}
+}
+
+void Worker::fail_or_beg_off(Client& client, const Task& task, const fs::path& scratch, const Failure& failure) {
+	try { // for want of room any povray fails, and may say anything
+		write_durably(scratch / "room", std::string(1 << 16, 'x'));
+	} catch (const Error& e) {
+		beg_off(client, task, e.what());
+		return;
+	}
+	fail(client, task, failure);
+}
+
+void Worker::beg_off(Client& client, const Task& task, const std::string& why) {
+	unwell = true;
+	bool tell = false;
+	{
+		const std::lock_guard lock(mutex);
+		tell = Clock::now() - told > std::chrono::minutes(1);
+		told = tell ? Clock::now() : told;
+	}
+	if (tell)
+		say(why + "; strips go back until that is mended");
+	insist(task.lease, [&] { return client.post("/v1/leases/" + std::to_string(task.lease) + "/return", json::object()); });
 }
 
 void Worker::fail(Client& client, const Task& task, Failure failure) {

@@ -149,9 +149,13 @@ void Worker::serve_slot() {
 	Client client(settings.server);
 	client.stop_when(&stopping);
 	Client sending(settings.server), delivering(settings.server); // go on while stopping
-	Backoff backoff;
+	Backoff backoff, hurt;
 	std::future<void> delivery; // of the strip before: it is cut and sent while the next is rendered
 	while (!stopping) {
+		if (unwell)
+			pause(hurt.next());
+		else
+			hurt.reset();
 		if (settings.when_idle && others_work()) {
 			pause(5);
 			continue;

@@ -49,6 +49,10 @@ private:
 	std::shared_ptr<Finished> work_on(Client& client, const Task& task);
 	void deliver(Client& client, const Finished& finished);
 	void fail(Client& client, const Task& task, Failure failure);
+	/// It is this machine that cannot: the strip goes back, and blames nobody.
+	void beg_off(Client& client, const Task& task, const std::string& why);
+	/// One of the two, by whether there is room to write here.
+	void fail_or_beg_off(Client& client, const Task& task, const fs::path& scratch, const Failure& failure);
 	void let_go(std::int64_t lease);
 	/// Asks until there is an answer, or the lease or all hope is lost.
 	void insist(std::int64_t lease, const std::function<json()>& ask);
@@ -60,12 +64,13 @@ private:
 	WorkerSettings settings;
 	Hello self;
 	Cache cache;
-	std::atomic<bool> stopping = false, aborting = false;
+	std::atomic<bool> stopping = false, aborting = false, unwell = false;
 	std::atomic<double> beat_every = 1;
 	std::mutex mutex;
 	std::condition_variable wake;
 	std::set<std::int64_t> held, dropped;
 	Clock::time_point deadline = Clock::time_point::max(), last_work = Clock::now();
+	Clock::time_point told = Clock::now() - std::chrono::hours(1); ///< when it last said that it is unwell
 	int busy = 0;
 	std::string refusal; ///< why the server turned us away
 	bool over = false;

@@ -14,7 +14,7 @@ import urllib.error
 import urllib.request
 import zlib
 
-BIN = sys.argv[1]
+BIN = os.path.abspath(sys.argv[1])
 os.umask(0o077) # tokens are secret, or there would be a word about it
 WORK = tempfile.mkdtemp(prefix="farm-test-")
 ENV = dict(os.environ, HOME=WORK + "/home")
@@ -124,10 +124,10 @@ def start(program, *words, log):
 
 class Server:
     """bhfarm-server on a free port of the loopback; `again` starts it over on the same port and spool."""
-    def __init__(self, *words, spool=None):
+    def __init__(self, *words, spool=None, log=None):
         self.spool = spool or tempfile.mkdtemp(dir=WORK)
         self.words, self.port = words, 0
-        self.log = self.spool + ".log"
+        self.log = log or self.spool + ".log"
         self.again()
 
     def again(self):

@@ -289,8 +289,10 @@ TEST(Scheduler, RestoredFromItsOwnVotes) {
 	Scheduler s(unchecked(), 1);
 	s.add_job(1, 10, 0);
 	Changes changes;
+	std::map<int, std::vector<Vote>> votes;
 	for (const int strip : {7, 2, 3})
-		s.restore_vote(1, strip, "a", truth(1, strip), true, changes);
+		votes[strip].push_back({"a", truth(1, strip), true});
+	s.restore_votes(1, votes, changes);
 	s.restore_lease({5, 1, 4, "a", 0, 0}, 0);
 	s.add_worker("a", 2, 0);
 	std::vector<int> rest;
