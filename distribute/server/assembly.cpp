@@ -158,7 +158,16 @@ Awaitable<void> Farm::finish(JobId id) {
 	if (!all_jobs.count(id) || all_jobs.at(id).frames_done < spec.frames())
 		co_return;
 	const double ended = wall_time();
+	// What a full disk kept from being noted is made up for.
+	std::vector<std::string> settled;
+	if (notes_lost)
+		for (const Settled& s : scheduler.jobs().at(id).result)
+			settled.push_back(digits(s.hash));
 	Ledger::Work work = [=](Database& db) {
+		for (size_t s = 0; s < settled.size(); ++s)
+			rows::set_settled(db, id, static_cast<int>(s), settled[s]);
+		for (int i = 0; i < spec.frames() && !settled.empty(); ++i)
+			rows::set_frame(db, id, i, true);
 		rows::set_stage(db, id, Stage::done, remark, ended);
 		rows::end_leases(db, id);
 	};

@@ -83,7 +83,10 @@ Awaitable<void> Farm::move(fs::path from, fs::path to) {
 void Farm::note(Ledger::Work work) {
 	ledger.post(std::move(work), [this](const std::string& error) {
 		if (!error.empty())
-			boost::asio::post(context, [this, error] { complain(error); });
+			boost::asio::post(context, [this, error] {
+				notes_lost = true;
+				complain(error);
+			});
 	});
 }
 

@@ -129,6 +129,7 @@ private:
 	std::deque<std::pair<JobId, int>> to_stitch; // frame index; -1: finish the job
 	std::shared_ptr<Bell> stitch_bell;
 	std::string complaint;
+	bool notes_lost = false; ///< what `note` was to write, to a full disk
 };
 
 /// Seconds since 1970.
