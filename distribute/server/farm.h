@@ -91,7 +91,9 @@ public:
 private:
 	// restore.cpp
 	void restore();
-	void restore_strips(const JobRow& row, Changes& changes);
+	using SettledAs = std::map<int, PixelHash>; ///< strips, by what the ledger has them settled as
+	SettledAs restore_strips(const JobRow& row, Changes& changes);
+	bool stitched_as(const Job& job, int index, const SettledAs& settled) const;
 	/// Waits until it is on the disk; throws HttpError 507 if it cannot be.
 	Awaitable<void> commit(Ledger::Work work);
 	/// Likewise for a file that is written and has to get to its place.

@@ -19,21 +19,37 @@ void Farm::enter(const JobRow& row) {
 }
 
 // A row without its file is worth nothing, and neither is a file without its row: nobody was told of it.
-void Farm::restore_strips(const JobRow& row, Changes& changes) {
+Farm::SettledAs Farm::restore_strips(const JobRow& row, Changes& changes) {
+	SettledAs settled;
 	std::map<int, std::vector<Vote>> votes;
 	std::set<std::string> names;
 	for (const ReportRow& report : ledger.reports(row.id)) {
 		const fs::path file = spool.strip(row.id, report.strip, report.pixels, row.spec.suffix());
+		const PixelHash hash = std::stoull(report.pixels.substr(0, 16), nullptr, 16);
 		names.insert(file.filename());
 		if (fs::exists(file))
-			votes[report.strip].push_back({report.worker, std::stoull(report.pixels.substr(0, 16), nullptr, 16), report.settled});
+			votes[report.strip].push_back({report.worker, hash, report.settled});
+		if (report.settled)
+			settled[report.strip] = hash;
 	}
 	scheduler.restore_votes(row.id, votes, changes);
 	spool.keep_strips(row.id, names);
+	return settled;
+}
+
+// A frame that was stitched before the votes were counted anew, and a strip went to others, is none.
+bool Farm::stitched_as(const Job& job, int index, const SettledAs& settled) const {
+	const JobState& j = scheduler.jobs().at(job.row.id);
+	const int per = job.row.spec.strips_per_frame();
+	for (int s = index * per; s < (index + 1) * per; ++s)
+		if (const auto was = settled.find(s); was == settled.end() || was->second != j.result[static_cast<size_t>(s)].hash)
+			return false;
+	return true;
 }
 
 void Farm::restore() {
 	Changes changes;
+	std::map<JobId, SettledAs> settled;
 	for (const auto& [worker, why] : ledger.aside())
 		scheduler.restore_aside(worker, why);
 	for (const JobRow& row : ledger.jobs()) {
@@ -42,7 +58,7 @@ void Farm::restore() {
 			spool.remove_strips(row.id);
 			continue;
 		}
-		restore_strips(row, changes);
+		settled[row.id] = restore_strips(row, changes);
 		if (row.stage == Stage::failed)
 			scheduler.restore_failed(row.id);
 		scheduler.set_paused(row.id, row.stage == Stage::paused);
@@ -58,7 +74,8 @@ void Farm::restore() {
 			continue;
 		const auto index = static_cast<size_t>(frame);
 		const fs::path picture = spool.frame(id, job->second.row.spec.picture(job->second.row.spec.frame(frame)));
-		if (index >= job->second.stitched.size() || !frame_complete(job->second, frame)) {
+		if (index >= job->second.stitched.size() || !frame_complete(job->second, frame) ||
+			!stitched_as(job->second, frame, settled[id])) {
 			std::error_code ignored;
 			fs::remove(picture, ignored);
 		} else if (fs::exists(picture)) {
