@@ -11,6 +11,7 @@
 #include <arpa/inet.h>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <fstream>
 #include <fcntl.h>
 #include <sys/socket.h>
@@ -32,7 +33,8 @@ protected:
 		try {
 			sandbox = Sandbox(shell);
 		} catch (const Error& e) {
-			if (std::string(e.what()).find("does not work here") != std::string::npos)
+			// Only where bubblewrap by itself does not work either: a fence of ours that is broken must fail.
+			if (std::system("bwrap --unshare-all --ro-bind / / true >/dev/null 2>&1") != 0)
 				GTEST_SKIP() << e.what();
 			throw;
 		}
