@@ -91,7 +91,8 @@ int submit_command(const Words& words) {
 	for (const json& w : workers.at("workers"))
 		slots += w.value("slots", 0);
 	// With nobody there yet, a small lab's worth.
-	Prepared prepared = prepare(a, slots > 0 ? slots : 16);
+	Prepared prepared = prepare(a);
+	try_out(prepared, a, slots > 0 ? slots : 16);
 	// So that a job whose answer was lost is not two jobs.
 	prepared.scene.spec.client_key = random_hex(16);
 	const std::int64_t id = patiently([&] { return send_job(client, prepared); });
@@ -155,6 +156,7 @@ int workers_command(const Words& words) {
 			clock_text(w.value("silent", 0.0)),
 			!w.value("aside", "").empty() ? "set aside: " + w.value("aside", "")
 			: w.value("draining", false)  ? "draining"
+			: w.value("rests", 0.0) > 0   ? "rests after failures, for " + clock_text(w.value("rests", 0.0))
 										  : ""});
 	print_table(rows);
 	return 0;
@@ -197,6 +199,8 @@ int fetch_command(const Words& words) {
 			std::puts((folder / name).c_str());
 		names.push_back((folder / name).string());
 	};
+	if (done.at("pictures").empty())
+		say("no frame of job " + std::to_string(id) + " is finished yet");
 	for (const json& picture : done.at("pictures"))
 		bring(picture.get<std::string>(), path_of(id, "/frames/" + url_encode(picture.get<std::string>())));
 	if (const std::string film = job.value("film", ""); job.value("stage", "") == "done" && !film.empty())
@@ -248,7 +252,10 @@ int drain_command(const Words& words) {
 }
 
 int token_command(const Words& words) {
-	if (words != Words{"new"})
+	const std::vector<Option> options = {{"--help", "", "this", ""}};
+	const Arguments a(words, options);
+	help_if_asked(a, "bhfarm token new\nPrints a new token, for the server's --token-file and the workers'.", options);
+	if (a.rest != Words{"new"})
 		throw Error("'bhfarm token new' prints a new token; put it into the server's --token-file and the workers'");
 	std::puts(random_hex(32).c_str());
 	return 0;

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // bhfarm render: a server and a worker of one's own, for one job.
 #include "distribute/client/commands.h"
+#include "distribute/client/local_farm.h"
 #include "distribute/client/show.h"
 #include "distribute/client/submit.h"
 #include "distribute/common/error.h"
 #include "distribute/common/files.h"
 #include "distribute/common/hash.h"
-#include "distribute/common/process.h"
 
 #include <csignal>
 #include <cstdio>
-#include <optional>
 #include <set>
 #include <thread>
 #include <unistd.h>
@@ -22,104 +21,37 @@ std::atomic<bool> interrupted = false;
 
 void interrupt(int) { interrupted = true; }
 
-/// What goes on of this job from one command to the next: everything hangs on the scene's files, its options and where the
-/// pictures go. Not on how frames are cut, which hangs on how busy the machine was.
-std::string key_of(const Prepared& p, const fs::path& folder) {
+/// Where the state of a command is kept from one time to the next: by the words about the scene and where the pictures go.
+fs::path state_of(const Prepared& p, const fs::path& output) {
+	json all = {p.scene.spec, p.scene.scene.string(), output.string()};
+	for (const fs::path& library : p.scene.libraries)
+		all.push_back(library.string());
+	return state_folder() / "render" / sha256(all.dump()).substr(0, 24);
+}
+
+/// What goes on of a job in there: everything hangs on the scene's files too. Not on how frames are cut, which hangs on how busy
+/// the machine was.
+std::string key_of(const Prepared& p) {
 	JobSpec spec = p.scene.spec;
 	spec.strip_rows = 1;
-	return sha256(json(spec).dump() + "\n" + folder.string()).substr(0, 24);
+	return sha256(json(spec).dump()).substr(0, 24);
 }
 
-/// Waits for the end of a process that was told to; killed if it will not.
-void end(std::optional<Process>& process) {
-	if (process && !process->over(10))
-		process->signal(SIGKILL);
-	process.reset();
+/// Removes what films left behind that nobody went on with for thirty days.
+void remove_forgotten() {
+	std::error_code error;
+	for (fs::directory_iterator at(state_folder() / "render", error), end; !error && at != end; at.increment(error)) {
+		std::error_code ignored;
+		const auto age = fs::file_time_type::clock::now() - fs::last_write_time(at->path() / "token", ignored);
+		if (ignored || age < std::chrono::hours(30 * 24))
+			continue;
+		try {
+			const FileLock lock(at->path() / "lock", "");
+			fs::remove_all(at->path(), ignored);
+		} catch (const Error&) { // it is at work, for more than thirty days
+		}
+	}
 }
-
-void tell(std::optional<Process>& process, int signal) {
-	if (process)
-		process->signal(signal);
-}
-
-/// A server and a worker of one's own, started again should one of them die.
-class LocalFarm {
-public:
-	LocalFarm(const fs::path& state_folder, int slot_count, const std::string& povray_file, bool with_fence)
-		: state(state_folder), slots(slot_count), povray(povray_file), fenced(with_fence) {}
-
-	fs::path spool() const { return state / "spool"; }
-	/// Where it listens; empty if we were interrupted first. Throws Error with the server's own last line.
-	std::string start_server() {
-		fs::remove(spool() / "url");
-		Command command;
-		command.words = {(program_folder() / "bhfarm-server").string(), "--listen", address, "--spool", spool().string(),
-			"--lease", "5", "--check-every", "0", "--token-file", (state / "token").string()};
-		command.log = state / "server.log";
-		server.reset();
-		server.emplace(command);
-		while (!interrupted && !fs::exists(spool() / "url"))
-			if (server->over(0.02))
-				throw Error(last_line(command.log));
-		if (interrupted)
-			return "";
-		const std::string text = read_file(spool() / "url");
-		url = text.substr(0, text.find('\n'));
-		address = url.substr(url.find("//") + 2);
-		return url;
-	}
-	void start_worker() {
-		Command command;
-		command.words = {(program_folder() / "bhfarm-worker").string(), "--server", url, "--token-file",
-			(state / "token").string(), "--slots", std::to_string(slots), "--name", "here", "--nice", "0", "--cache",
-			(state / "cache").string()};
-		if (!povray.empty())
-			command.words.insert(command.words.end(), {"--povray", povray});
-		// One's own scene may have all of one's own machine.
-		command.words.insert(command.words.end(), {"--memory-limit", "0"});
-		if (!fenced)
-			command.words.push_back("--no-sandbox");
-		command.log = state / "worker.log";
-		worker.reset();
-		worker.emplace(command);
-	}
-	void mend() {
-		const bool no_server = server->over(0), no_worker = worker->over(0);
-		if ((no_server || no_worker) && ++deaths > 20)
-			throw Error(std::string(no_server ? "the server" : "the worker") +
-						" dies again and again: " + last_line(state / (no_server ? "server.log" : "worker.log")));
-		if (no_server)
-			start_server();
-		if (no_worker)
-			start_worker();
-	}
-	/// `all_done`: nothing is to be given back, so that the worker need not be waited for before the server goes.
-	void stop(bool all_done) {
-		tell(worker, SIGINT);
-		if (!all_done)
-			end(worker);
-		tell(server, SIGTERM);
-		end(worker);
-		end(server);
-	}
-
-private:
-	static std::string last_line(const fs::path& log) {
-		std::string text = fs::exists(log) ? read_file(log) : "";
-		while (!text.empty() && text.back() == '\n')
-			text.pop_back();
-		const std::string line = text.substr(text.rfind('\n') + 1);
-		const size_t name = line.find(": ");
-		return line.empty() ? "it did not start" : name == std::string::npos ? line : line.substr(name + 2);
-	}
-
-	fs::path state;
-	int slots;
-	std::string povray, url, address = "127.0.0.1:0";
-	bool fenced;
-	std::optional<Process> server, worker;
-	int deaths = 0;
-};
 
 /// Puts a finished picture where it belongs, whole or not at all; the server keeps its own, which costs nothing on the same disk.
 void hand_over(const fs::path& from, const fs::path& to) {
@@ -173,6 +105,14 @@ private:
 	std::set<std::string> there;
 };
 
+/// What this state's server still has of the scene as it was before it was edited.
+void remove_others(Client& client, std::int64_t id) {
+	const json all = client.get("/v1/jobs");
+	for (const json& job : all.at("jobs"))
+		if (const auto other = job.value("id", std::int64_t(0)); other != id)
+			client.remove("/v1/jobs/" + std::to_string(other));
+}
+
 } // namespace
 
 int render_command(const Words& words) {
@@ -185,7 +125,7 @@ int render_command(const Words& words) {
 		options);
 	const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
 	const int slots = a.has("--slots") ? static_cast<int>(a.number("--slots", 1, 1024)) : cores;
-	Prepared prepared = prepare(a, slots);
+	Prepared prepared = prepare(a);
 	JobSpec& spec = prepared.scene.spec;
 	const fs::path output =
 		fs::absolute(prepared.scene.output.empty() ? fs::path(".") : prepared.scene.output).lexically_normal();
@@ -196,39 +136,50 @@ int render_command(const Words& words) {
 		else if (::access(folder.c_str(), W_OK) != 0)
 			throw system_error("cannot write to the folder " + folder.string());
 
-	spec.client_key = key_of(prepared, output);
-	const fs::path state = state_folder() / "render" / spec.client_key;
+	remove_forgotten();
+	const fs::path state = state_of(prepared, output);
+	const bool fresh = !fs::exists(state);
 	fs::create_directories(state);
 	fs::permissions(state, fs::perms::owner_all); // the token is nobody else's
 	const FileLock lock(state / "lock", "this very job is being rendered already");
 	write_durably(state / "token", random_hex(32) + "\n");
 	fs::permissions(state / "token", fs::perms::owner_read | fs::perms::owner_write);
 
+	LocalFarm farm({state, slots, a.get("--povray"), prepared.sandbox.fences()});
+	std::string url;
+	try {
+		url = farm.start_server(interrupted);
+		farm.start_worker();
+		try_out(prepared, a, slots); // while the worker tries povray
+	} catch (...) {
+		farm.stop(true);
+		std::error_code ignored;
+		if (fresh)
+			fs::remove_all(state, ignored);
+		throw;
+	}
 	std::signal(SIGINT, interrupt);
 	std::signal(SIGTERM, interrupt);
 	std::signal(SIGHUP, interrupt);
-	LocalFarm farm(state, slots, a.get("--povray"), prepared.sandbox.fences());
+	spec.client_key = key_of(prepared);
 	Output frames(spec, output);
-	json job;
-	if (const std::string url = farm.start_server(); !url.empty()) {
-		farm.start_worker();
-		Client client(access_from(url, (state / "token").string(), ""));
-		const std::int64_t id = send_job(client, prepared);
-		job = client.get("/v1/jobs/" + std::to_string(id));
-		if (job.value("stage", "") == "failed") {
-			client.post("/v1/jobs/" + std::to_string(id) + "/retry", json::object());
-		} else if (const int done = job.value("strips_done", 0); done > 0) {
-			say("going on where it was: " + progress_text(job));
-		}
-		job = follow(client, id, 60, interrupted, [&](const json& now) {
-			farm.mend();
-			frames.bring(client, farm.spool(), now);
-		});
+	Client client(access_from(url, (state / "token").string(), ""));
+	const std::int64_t id = send_job(client, prepared);
+	remove_others(client, id);
+	json job = client.get("/v1/jobs/" + std::to_string(id));
+	if (job.value("stage", "") == "failed") {
+		client.post("/v1/jobs/" + std::to_string(id) + "/retry", json::object());
+	} else if (const int done = job.value("strips_done", 0); done > 0) {
+		say("going on where it was: " + progress_text(job));
 	}
-	const std::string stage = job.is_object() ? job.value("stage", "") : "";
+	job = follow(client, id, 60, interrupted, [&](const json& now) {
+		farm.mend(interrupted);
+		frames.bring(client, farm.spool(), now);
+	});
+	const std::string stage = job.value("stage", "");
 	farm.stop(stage == "done");
 	if (stage != "done") {
-		const std::string error = job.is_object() ? job.value("error", "") : "";
+		const std::string error = job.value("error", "");
 		say(stage == "failed" ? error : "stopped; the same command goes on where it was");
 		return stage == "failed" ? 1 : 130;
 	}

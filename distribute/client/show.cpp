@@ -88,6 +88,7 @@ json follow(Client& client, std::int64_t id, double patience, const std::atomic<
 	ProgressLine progress;
 	auto heard = Clock::now();
 	json job;
+	std::string told;
 	while (!stop) {
 		try {
 			job = client.get("/v1/jobs/" + std::to_string(id));
@@ -95,12 +96,22 @@ json follow(Client& client, std::int64_t id, double patience, const std::atomic<
 			const std::string stage = job.value("stage", "");
 			if (stage != "running" && stage != "paused")
 				return job;
+			// An obstacle that somebody has to clear is told where nobody sees the progress, too.
+			if (const std::string doing = job.value("doing", ""); doing != told) {
+				told = doing;
+				if (doing.rfind("waiting: ", 0) == 0) {
+					progress.clear();
+					say(doing);
+				}
+			}
 			progress.show("job " + std::to_string(id) + ": " + (stage == "paused" ? "paused, " : "") + progress_text(job));
 		} catch (const Unreachable&) {
 			if (Clock::now() - heard > std::chrono::duration<double>(patience))
 				throw;
 		}
-		std::this_thread::sleep_for(std::chrono::milliseconds(200));
+		// The end is not to be missed by much.
+		const double eta = job.is_object() && job["eta"].is_number() ? job["eta"].get<double>() : 1;
+		std::this_thread::sleep_for(std::chrono::duration<double>(std::clamp(eta / 5, 0.03, 0.2)));
 		if (each_time)
 			each_time(job);
 	}

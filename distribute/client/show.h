@@ -35,7 +35,7 @@ private:
 };
 
 /// Follows a job to its end; returns it as it stands then. Lost connections are tried again for `patience` seconds. Ends early
-/// when `stop` is set. `each_time`, if there is one, is called five times a second, with the job as it stood last.
+/// when `stop` is set. `each_time`, if there is one, is called five times a second or more often, with the job as it stood last.
 nlohmann::json follow(Client& client, std::int64_t job, double patience, const std::atomic<bool>& stop,
 	const std::function<void(const nlohmann::json&)>& each_time = {});
 

@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 namespace farm {
 
@@ -30,48 +29,63 @@ namespace {
 /// povray traces whole blocks of so many rows; cuts elsewhere would trace some twice.
 constexpr int block = 32;
 
-/// What each strip costs beside its pixels and its parse, about: povray's start, a picture written and read, the way to the
-/// server.
-constexpr double start_seconds = 0.05;
+/// Half a minute at most, that there is something to see and little to lose.
+constexpr double longest = 30;
 
-/// At the job's end slots wait for the last strips, half of one each, but for the one that renders it; and each strip is parsed
-/// anew. The length for which both cost the same is the best: s with (cost/s) = (1 - 1/slots)/2 * s/share. Never so short that
-/// parsing is above a twentieth of it; half a minute at most, that there is something to see and little to lose. Radiosity's
-/// pretrace is done anew on each machine.
-double good_seconds(const Gathered& files, int frames, int slots) {
-	const double most = std::max(30.0, 20 * files.light_seconds),
-				 cost = files.parse_seconds + start_seconds + files.light_seconds;
-	const double share = files.frame_seconds * frames / slots, waits = 0.5 * (1 - 1.0 / slots);
-	const double best = slots > 1 ? std::sqrt(cost * share / waits) : most;
-	return std::max(20 * files.parse_seconds, std::min(most, best));
+/// Seconds for a job of equal strips, when frames are cut to so many. Beside its pixels each strip costs povray's start, the way
+/// to the server and a parse; radiosity's pretrace is done anew on each machine. What is not a whole frame is written and read as
+/// one, and packed a second time. At the job's end slots wait for the last strips, half of one each, but for the one that renders
+/// it.
+double job_seconds(const JobSpec& spec, const Gathered& files, int slots, int count) {
+	constexpr double start = 0.07, million_pixels = 0.13; // as measured, with a film of 1280 x 720
+	const double cut = count > 1 ? million_pixels * 1e-6 * spec.width * spec.height : 0;
+	const double strip = files.frame_seconds / count + start + cut + files.parse_seconds + files.light_seconds;
+	return strip * count * spec.frames() / slots + 0.5 * (1 - 1.0 / slots) * strip;
 }
 
-int strip_rows(const JobSpec& spec, const Gathered& files, const std::string& strips, int slots) {
-	int count = 0;
-	if (strips != "auto") {
-		count = static_cast<int>(whole_number(strips, "--strips", 1, limits::pixels));
-		if (count > spec.height)
-			throw Error("--strips is " + strips + ", and a frame has " + std::to_string(spec.height) + " rows");
+/// The count of strips a frame for which a job is done first; never so many that parsing is above a twentieth of a strip's time.
+int best_count(const JobSpec& spec, const Gathered& files, int slots, int blocks) {
+	const double least = 20 * files.parse_seconds, most = std::max({longest, 20 * files.light_seconds, 2 * least});
+	int best = 0;
+	for (int count = 1; count <= blocks; ++count) {
+		const double strip = files.frame_seconds / count;
+		if (count > 1 && strip < least)
+			break;
+		const bool too_long = strip > most && count < blocks;
+		if (!too_long && (best == 0 || job_seconds(spec, files, slots, count) < job_seconds(spec, files, slots, best)))
+			best = count;
 	}
+	return std::max(1, best);
+}
+
+/// --strips: 0 is auto.
+int asked_strips(const Arguments& arguments, const JobSpec& spec) {
+	const std::string& strips = arguments.get("--strips");
+	const int count = strips == "auto" ? 0 : static_cast<int>(whole_number(strips, "--strips", 1, limits::pixels));
+	if (count > spec.height)
+		throw Error("--strips is " + strips + ", and a frame has " + std::to_string(spec.height) + " rows");
+	return count;
+}
+
+int strip_rows(const JobSpec& spec, const Gathered& files, int count, int slots) {
 	if (!spec.whole_because.empty() || count == 1)
 		return spec.height;
 	const int blocks = (spec.height + block - 1) / block;
 	if (count > blocks) // as asked for, at some cost
 		return (spec.height + count - 1) / count;
-	if (strips == "auto") {
-		const double many = files.frame_seconds / good_seconds(files, spec.frames(), slots);
-		count = static_cast<int>(std::clamp(std::round(many), 1.0, static_cast<double>(blocks)));
-	}
-	return (blocks + count - 1) / count * block;
+	if (count == 0)
+		count = best_count(spec, files, slots, blocks);
+	return std::min(spec.height, (blocks + count - 1) / count * block);
 }
 
 } // namespace
 
-Prepared prepare(const Arguments& arguments, int slots) {
+Prepared prepare(const Arguments& arguments) {
 	Prepared p;
 	p.scene = settle(arguments.rest, {arguments.get("--frames"), arguments.get("--size"), arguments.get("--format")});
 	JobSpec& spec = p.scene.spec;
 	spec.priority = static_cast<int>(arguments.number("--priority", -100, 100));
+	asked_strips(arguments, spec);
 	const std::string& video = arguments.get("--video");
 	const double rate = static_cast<double>(arguments.number("--fps", 1, 1000));
 	if (video != "none" && (!video.empty() || spec.frames() > 1)) {
@@ -82,16 +96,20 @@ Prepared prepare(const Arguments& arguments, int slots) {
 		if (p.film.extension() != ".mp4")
 			throw Error("--video is '" + video + "'; its name must end in .mp4");
 	}
-	const fs::path povray = find_povray(arguments.get("--povray"));
-	p.sandbox = sandbox_for_own_scenes(povray, !arguments.has("--no-sandbox"));
-	p.files = gather(p.scene, {povray, p.sandbox}, arguments.all("--assets"));
-	spec.strip_rows = strip_rows(spec, p.files, arguments.get("--strips"), slots);
-	spec.check();
+	p.povray = find_povray(arguments.get("--povray"));
+	p.sandbox = sandbox_for_own_scenes(p.povray, !arguments.has("--no-sandbox"));
 	for (const auto& remark : p.scene.remarks)
 		say(remark);
+	return p;
+}
+
+void try_out(Prepared& p, const Arguments& arguments, int slots) {
+	JobSpec& spec = p.scene.spec;
+	p.files = gather(p.scene, {p.povray, p.sandbox}, arguments.all("--assets"));
+	spec.strip_rows = strip_rows(spec, p.files, asked_strips(arguments, spec), slots);
+	spec.check();
 	if (!spec.whole_because.empty())
 		say("frames are rendered whole: " + spec.whole_because);
-	return p;
 }
 
 std::int64_t send_job(Client& client, const Prepared& p) {

@@ -13,14 +13,17 @@ namespace farm {
 extern const std::vector<Option> scene_options;
 
 struct Prepared {
-	SettledScene scene; ///< its spec is complete
+	SettledScene scene; ///< its spec is complete once it has been tried out
 	Gathered files;
-	Sandbox sandbox;            ///< that it was tried out in
+	std::filesystem::path povray;
+	Sandbox sandbox;            ///< to try it out in
 	std::filesystem::path film; ///< where the film is to go; empty: there is none
 };
 
-/// Reads the scene, parses it once, and cuts it up for about so many slots. Says what is left out. Throws Error.
-Prepared prepare(const Arguments& arguments, int slots);
+/// What the words and the INI files say, and says what is left out. Throws Error.
+Prepared prepare(const Arguments& arguments);
+/// Parses the scene, gathers its files, and cuts its frames up for about so many slots. Throws Error.
+void try_out(Prepared& prepared, const Arguments& arguments, int slots);
 
 /// Sends what the server lacks, then the job; returns its number.
 std::int64_t send_job(Client& client, const Prepared& prepared);

@@ -26,8 +26,8 @@ std::string probe(const std::filesystem::path& povray, const Sandbox& sandbox) {
 	const ScratchFolder scratch(fs::temp_directory_path());
 	Task task;
 	task.spec.options = {"Input_File_Name=probe.pov", "Antialias=On", "Sampling_Method=2"};
-	task.spec.width = 64;
-	task.spec.height = task.spec.strip_rows = task.rows = 48;
+	task.spec.width = 40;
+	task.spec.height = task.spec.strip_rows = task.rows = 30;
 	task.spec.bits = 16;
 	write_durably(scratch.path() / "probe.pov", scene);
 	write_durably(scratch.path() / "probe.ini", strip_ini(task, scratch.path() / "probe.png"));

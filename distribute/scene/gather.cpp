@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <future>
 #include <glob.h>
 #include <regex>
 #include <set>
@@ -91,8 +92,11 @@ Gathered gather(SettledScene& scene, const Trier& trier, const std::vector<std::
 	JobSpec& spec = scene.spec;
 	std::set<std::string> reads;
 	const int count = spec.animation ? (spec.last - spec.first) / spec.step + 1 : 1;
-	for (const int index : std::set<int>{0, count / 2, count - 1}) {
-		Parsed parsed = parse(scene, spec.frame(index), trier);
+	std::vector<std::future<Parsed>> parses; // at once: most of the time povray waits for itself
+	for (const int index : std::set<int>{0, count / 2, count - 1})
+		parses.push_back(std::async(std::launch::async, [&, frame = spec.frame(index)] { return parse(scene, frame, trier); }));
+	for (auto& future : parses) {
+		Parsed parsed = future.get();
 		reads.merge(parsed.reads);
 		result.parse_seconds = std::max(result.parse_seconds, parsed.seconds);
 		if (spec.whole_because.empty() && parsed.said.find("An isosurface has 'evaluate'") != std::string::npos)

@@ -78,7 +78,7 @@ Awaitable<void> Farm::assemble() {
 				say("job " + std::to_string(id) + ": " + e.what() + "; trying again until it works");
 			told = e.what();
 			if (again)
-				all_jobs.at(id).doing = told;
+				all_jobs.at(id).doing = waits_because(told);
 			events.job(id);
 		}
 		to_stitch.pop_front();

@@ -94,7 +94,7 @@ json describe(const Farm& farm, const Touched& touched) {
 json describe(const Farm& farm, const Job& job) {
 	const JobSpec& spec = job.row.spec;
 	json j{{"id", job.row.id}, {"name", spec.name}, {"stage", stage_name(job.row.stage)}, {"error", job.row.error},
-		{"doing", job.doing}, {"created", job.row.created}, {"ended", job.row.ended}, {"priority", spec.priority},
+		{"doing", farm.doing(job)}, {"created", job.row.created}, {"ended", job.row.ended}, {"priority", spec.priority},
 		{"width", spec.width}, {"height", spec.height}, {"animation", spec.animation}, {"digits", spec.digits},
 		{"format", spec.format == Format::png ? "png" : "exr"}, {"first", spec.first}, {"last", spec.last}, {"step", spec.step},
 		{"frames", spec.frames()}, {"frames_done", job.frames_done}, {"strips", spec.strips()},
@@ -121,6 +121,7 @@ json describe(const Farm& farm, const Guest& guest) {
 	j["done"] = w.done;
 	j["aside"] = w.aside;
 	j["draining"] = w.draining;
+	j["rests"] = std::max(0.0, w.rests_until - farm.now());
 	j["silent"] = farm.now() - w.heard;
 	json strips = json::array();
 	for (const LeaseId id : w.leases)

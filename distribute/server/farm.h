@@ -86,6 +86,8 @@ public:
 	Time now() const;
 	/// What keeps the spool from being written; empty: nothing does.
 	void complain(const std::string& what);
+	/// What keeps a job from its end or from going on: a clause, or nothing.
+	std::string doing(const Job& job) const;
 	const Rules& rules() const { return settings.rules; }
 
 private:
@@ -100,15 +102,16 @@ private:
 	Awaitable<void> move(fs::path from, fs::path to);
 	/// Does not wait: for what may be lost.
 	void note(Ledger::Work work);
-	void apply(const Changes& changes);
-	std::string names_of(const std::vector<WorkerId>& workers) const;
 	void wake(int how_many);
 	Awaitable<void> keep_house();
 	Awaitable<void> remove_old(JobId job);
 	void enter(const JobRow& row);
 	void set_stage(Job& job, Stage stage, const std::string& error = "");
-	std::string place(const JobSpec& spec, int strip) const;
 	Awaitable<void> tick();
+	// changes.cpp
+	void apply(const Changes& changes);
+	std::string names_of(const std::vector<WorkerId>& workers) const;
+	std::string place(const JobSpec& spec, int strip) const;
 	// assembly.cpp
 	void strip_settled(JobId job, int strip);
 	Awaitable<void> assemble();
@@ -134,6 +137,8 @@ private:
 	bool notes_lost = false; ///< what `note` was to write, to a full disk
 };
 
+/// How `doing` tells of an obstacle that somebody has to clear.
+inline std::string waits_because(const std::string& obstacle) { return "waiting: " + obstacle; }
 /// Seconds since 1970.
 double wall_time();
 const char* stage_name(Stage stage);

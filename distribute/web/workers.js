@@ -23,6 +23,8 @@ function state(worker) {
 		return `set aside: ${worker.aside}`;
 	if ((worker.silent ?? 0) + age(worker) > quiet && worker.busy > 0 && worker.silent > quiet)
 		return `silent for ${duration(worker.silent + age(worker))}`;
+	if (worker.rests > age(worker))
+		return `rests after failures, for ${duration(worker.rests - age(worker))}`;
 	return worker.draining ? "leaves after this" : worker.busy ? "works" : "waits";
 }
 

@@ -59,13 +59,19 @@ spool_disk.empty()
 number = int(bhfarm("submit", ini, "--strips", "10", server=server).stdout)
 # Strips that come meanwhile wait with their worker.
 wait(lambda: server.job(number)["strips_done"] >= 3, "some strips")
+watch = subprocess.Popen([BIN + "/bhfarm", "watch", "--server", server.url, str(number)], env=ENV, stderr=subprocess.PIPE, text=True)
 spool_disk.fill()
 time.sleep(1.5)
 stood = server.job(number)["strips_done"]
 time.sleep(1)
 assert server.job(number)["strips_done"] == stood < 40
+assert server.job(number)["doing"].startswith("waiting: ") and any(f in server.job(number)["doing"] for f in FULL), server.job(number)
+line = watch.stderr.readline()
+watch.kill()
+assert "waiting: " in line and any(f in line for f in FULL), line
 spool_disk.empty()
 wait(lambda: server.job(number)["strips_done"] > stood + 3, "it to go on", worker, WORK + "/server.log")
+assert server.job(number)["doing"] == ""
 assert "turned away until that is mended" in said("server") and "takes what is written again" in said("server"), said("server")
 # The worker's own disk: the strip goes back, blames nobody, and it says so once.
 worker_disk.fill()

@@ -12,6 +12,7 @@ import socket
 import subprocess
 import sys
 import threading
+import time
 
 from farm import BIN, ENV, FENCED, WORK, Server, bhfarm, include_folder, start, wait
 
@@ -45,6 +46,8 @@ for kind, letter in kinds.items():
 listener = socket.create_server(("127.0.0.1", 0))
 URL = "http://127.0.0.1:%d/x" % listener.getsockname()[1]
 
+POLL = 0.5 # seconds that a worker is kept waiting for a strip
+
 
 class Desk(http.server.BaseHTTPRequestHandler):
     """A server that lends what a test puts in `tasks` and keeps what comes back in `results`: no second tries, no pauses."""
@@ -74,7 +77,7 @@ class Desk(http.server.BaseHTTPRequestHandler):
             self.reply({"protocol": 1, "lease_seconds": 20})
         elif self.path.endswith("/take"):
             try:
-                self.reply(self.tasks.get(timeout=0.5))
+                self.reply(self.tasks.get(timeout=POLL))
             except queue.Empty:
                 self.reply()
         elif self.path.endswith("/heartbeat"):
@@ -132,6 +135,7 @@ def worker(name, *words):
 def leave(process):
     process.terminate()
     assert process.wait(60) == 0
+    time.sleep(2 * POLL) # polls of one that has gone would swallow the next one's strips
 
 
 # Somebody else's job, whose files lie in the same worker's cache.
@@ -210,13 +214,15 @@ BOMBS = {
     '#while (1) #debug "0123456789012345678901234567890123456789012345678901234567890123456789\\n" #end\n': "--output-limit allows, 8 MB",
     '#declare I = 0; #while (1) #declare I = I + 1; #fopen F concat("f", str(I, 0, 0)) write #fclose F #end\n': "--output-limit allows, 8 MB",
 }
-limited = worker("limited", "--cpu-limit", "2", "--memory-limit", "600", "--output-limit", "8")
-for text, line in BOMBS.items():
-    stage, error, log = outcome(send(HEAD + text)[0])
-    assert stage == "failure" and line in error and "\n" not in error, (text, stage, error, log[-300:])
-    assert len(log) <= 40000
-assert outcome(send(HEAD)[0])[0] == "strip"
-leave(limited)
+# A busy machine writes little in two seconds: only the first, which does nothing else, may meet that limit.
+for name, seconds, bombs in (("short", "2", list(BOMBS.items())[:1]), ("limited", "60", list(BOMBS.items())[1:])):
+    limited = worker(name, "--cpu-limit", seconds, "--memory-limit", "600", "--output-limit", "8")
+    for text, line in bombs:
+        stage, error, log = outcome(send(HEAD + text)[0])
+        assert stage == "failure" and line in error and "\n" not in error, (text, stage, error, log[-300:])
+        assert len(log) <= 40000
+    assert outcome(send(HEAD)[0])[0] == "strip"
+    leave(limited)
 slow = worker("slow", "--wall-limit", "2", "--cpu-limit", "0")
 stage, error, log = outcome(send(HEAD + "#while (1) #end\n")[0])
 assert stage == "failure" and "--wall-limit allows, 2 s" in error, error

@@ -79,7 +79,8 @@ fits()
 # A job from elsewhere is seen, and fills in strip by strip to its end, without a reload.
 browser.run("""window.mark = 1; window.seen = [];
     setInterval(() => { const t = document.querySelector('#frames .tile'); if (t) seen.push([t.ariaLabel, t.querySelector('img')?.src ?? '', document.title]); }, 30)""")
-bhfarm("submit", scene(WORK + "/scene"), "--strips", "5", server=server)
+# Parsing takes long enough for each strip to be seen by itself, on a fast machine too.
+bhfarm("submit", scene(WORK + "/scene", extra="#for (I, 1, 1500000) #end\n"), "--strips", "5", server=server)
 browser.wait(STAGE + " === 'running'")
 browser.wait("document.querySelectorAll('#frames .tile').length === 2")
 worker = server.worker(name="ada")

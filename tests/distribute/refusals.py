@@ -140,6 +140,17 @@ done = bhfarm("watch", str(number), server=server, good=False)
 assert done.returncode == 1 and "frame 2" in done.stderr and "caf" in done.stderr, done
 log = bhfarm("log", str(number), server=server).stdout
 assert "caf" in log.split("\n")[0] and "\x1b" not in log, log
+# Nor one that lacks a file there: the job says what brings it along. Of a worker that rests after all that, the list says so.
+with open(folder + "/parts/sky.inc", "w") as f:
+    f.write('#if (clock > 0.2 & clock < 0.3) #include "then.inc" #end\n')
+with open(folder + "/then.inc", "w") as f:
+    f.write("\n")
+number = int(bhfarm("submit", ini, "--video", "none", server=server).stdout)
+done = bhfarm("watch", str(number), server=server, good=False)
+assert done.returncode == 1 and "frame 2" in done.stderr and "then.inc" in done.stderr and "--assets sends" in done.stderr, done
+assert bhfarm("fetch", str(number), "--to", WORK + "/none", "--json", server=server).returncode == 0
+number = int(bhfarm("submit", ini, "--video", "none", "--assets", "then.inc", server=server).stdout)
+bhfarm("watch", str(number), server=server)
 # Nor does a worker's name steer the terminal.
 other = Server()
 assert other.ask("/v1/workers", {"id": "a-worker-of-mine", "name": "\x1b]0;x\x07one\ntwo", "slots": 1, "povray": "3.7", "probe": ""})[0] == 201

@@ -17,8 +17,10 @@ state = ENV["HOME"] + "/.local/state/bhfarm/render"
 process = subprocess.Popen([BIN + "/bhfarm", "render", "film.ini", "--slots", "1", "--strips", "5"], cwd=folder, env=ENV, stderr=subprocess.PIPE, text=True)
 
 
-def settled():
+def settled(but=None):
     for job in os.listdir(state) if os.path.isdir(state) else []:
+        if job == but:
+            continue
         strips = state + "/" + job + "/spool/jobs/1/strips"
         if os.path.isdir(strips) and len(os.listdir(strips)) >= 3:
             return True
@@ -51,6 +53,32 @@ for child in children:
 assert process.wait(120) == 0
 for frame in (1, 2, 3):
     same("%s/killed%d.png" % (WORK, frame), "%s/reference/film%d.png" % (WORK, frame))
+
+# Stopped, and the scene edited: nothing of the old one is in the film, nor left behind. What nobody went on with for a month goes too.
+def interrupted(words, but=None):
+    process = subprocess.Popen([BIN + "/bhfarm", "render", "film.ini", "--slots", "1", *words], cwd=folder, env=ENV, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+    wait(lambda: settled(but), "three strips", process)
+    process.send_signal(signal.SIGINT)
+    assert process.wait(30) == 130
+
+
+interrupted(["--strips", "6", "--video", "none", "+O" + WORK + "/old"])
+old, = os.listdir(state)
+os.utime(state + "/" + old + "/token", (time.time() - 31 * 86400,) * 2)
+words = ["--strips", "5", "--video", "none", "+O" + WORK + "/edited"]
+interrupted(words, old)
+assert old not in os.listdir(state)
+before = open(folder + "/film.pov").read()
+with open(folder + "/film.pov", "w") as f:
+    f.write(before.replace("Green", "Blue"))
+povray(ini, folder, "+O" + WORK + "/reference/blue")
+done = bhfarm("render", "film.ini", "--slots", "1", *words, cwd=folder)
+assert "going on" not in done.stderr, done.stderr
+for frame in (1, 2, 3):
+    same("%s/edited%d.png" % (WORK, frame), "%s/reference/blue%d.png" % (WORK, frame))
+assert os.listdir(state) == [], "left behind: %s" % os.listdir(state)
+with open(folder + "/film.pov", "w") as f:
+    f.write(before)
 
 # On a terminal there is progress, on one line that is written over; elsewhere there was none.
 shown, terminal = b"", pty.openpty()
