@@ -14,6 +14,9 @@ import urllib.error
 import urllib.request
 import zlib
 
+sys.path.append(os.path.dirname(os.path.abspath(__file__)) + "/../overlay")
+from povray import patiently # noqa: E402
+
 BIN = os.path.abspath(sys.argv[1])
 os.umask(0o077) # tokens are secret, or there would be a word about it
 WORK = tempfile.mkdtemp(prefix="farm-test-")
@@ -70,11 +73,8 @@ def povray(ini, folder, *words):
     empty = WORK + "/empty.ini"
     with open(empty, "w") as f:
         f.write("Verbose=Off\n")
-    for tries in range(5): # on a busy machine it may give up before it begins
-        done = subprocess.run([BIN + "/povray", ini, "+L" + include_folder(), "-D", "+WT2", "Reproducible=on", *words], cwd=folder, capture_output=True,
-                              text=True, env=dict(ENV, POVINI=empty))
-        if "Timed out waiting for worker thread startup" not in done.stderr:
-            break
+    words = [BIN + "/povray", ini, "+L" + include_folder(), "-D", "+WT2", "Reproducible=on", *words]
+    done = patiently(lambda: subprocess.run(words, cwd=folder, capture_output=True, text=True, env=dict(ENV, POVINI=empty)), lambda run: run.stderr)
     assert done.returncode == 0, done.stderr[-2000:]
 
 

@@ -66,7 +66,7 @@ def stopped(program, scene, words, how):
 		code = povray.finish(process)
 		expect(code == (2 if how == signal.SIGINT else -how), words, "stopped by", how.name, "exits with", code)
 		expect(os.path.exists(state) and povray.picture(folder) is None, words, "stopped by", how.name, "leaves its state and no picture")
-		expect(povray.finish(povray.start(program, scene, words + " +C", folder)) == 0, words, "+C:", povray.said(folder)[-200:])
+		expect(povray.run(program, scene, words + " +C", folder) == 0, words, "+C:", povray.said(folder)[-200:])
 		expect(not os.path.exists(state), "a finished picture needs no state")
 		return povray.picture(folder), pixels_traced(folder)
 

@@ -46,6 +46,20 @@ def finish(process, seconds=60):
 		return 999
 
 
+def patiently(render, said):
+	"""What render() returns, given once more, up to four times, where povray had nothing to say but that the machine is too busy; said(that) is what it said."""
+	for _ in range(5):
+		done = render()
+		if "Timed out waiting for worker thread startup" not in said(done):
+			break
+	return done
+
+
+def run(povray, scene, words, folder):
+	"""From start to end in the folder: the exit code."""
+	return patiently(lambda: finish(start(povray, scene, words, folder)), lambda _: said(folder))
+
+
 def said(folder):
 	with open(folder + "/out", errors="replace") as file:
 		return file.read()
@@ -62,7 +76,7 @@ class Run:
 
 	def __init__(self, povray, scene, words):
 		with tempfile.TemporaryDirectory() as folder:
-			self.code = finish(start(povray, scene, words, folder))
+			self.code = run(povray, scene, words, folder)
 			self.text, self.picture = said(folder), picture(folder)
 
 	def last_word(self):

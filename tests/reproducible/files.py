@@ -29,9 +29,7 @@ class Folder:
 		for old in os.listdir(self.path):
 			if old.startswith("out"):
 				os.remove(self.path + old)
-		process = povray.start(PROGRAM, scene or self.scene, f"{size} -D Render_Block_Size=16 Reproducible=on +Oout {words}", self.path)
-		code = povray.finish(process)
-		return code, povray.said(self.path)
+		return povray.run(PROGRAM, scene or self.scene, f"{size} -D Render_Block_Size=16 Reproducible=on +Oout {words}", self.path), povray.said(self.path)
 
 	def picture(self, words, scene=None):
 		code, said = self.run(words, scene)

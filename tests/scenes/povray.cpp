@@ -77,10 +77,15 @@ Rendering povray(const std::string& scene, int width, int height, const std::str
 	command << "cd " << name << " && HOME=" << name << " timeout 250 " << POVRAY
 			<< " +Iscene.pov +Oscene.ppm +FP16 File_Gamma=1 -D -A +WT1 +L" << INCLUDES << " +L" << OUR_INCLUDES << " +W" << width
 			<< " +H" << height << " " << words << " >out 2>&1";
-	const int status = std::system(command.str().c_str());
-	run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128;
-	std::ifstream out(run.folder + "/out");
-	run.text.assign(std::istreambuf_iterator<char>(out), std::istreambuf_iterator<char>());
+	for (int tries = 0; tries < 5; tries++) {
+		const int status = std::system(command.str().c_str());
+		run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128;
+		std::ifstream out(run.folder + "/out");
+		run.text.assign(std::istreambuf_iterator<char>(out), std::istreambuf_iterator<char>());
+		// On a busy machine it may give up before it begins.
+		if (run.text.find("Timed out waiting for worker thread startup") == std::string::npos)
+			break;
+	}
 	// Less the banner, where there is more than that. (Not from "==== [Parsing...]" on: when parsing is quick,
 	// POV-Ray's console prints the first messages above that line.)
 	const std::size_t last_option = run.text.find("Warning Stream to console");
