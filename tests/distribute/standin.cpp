@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Stands in for povray where a test is about the farm: a picture whose every pixel follows from its frame and place, in a
-// millisecond. Its own name says what it is like: liar (other pixels than the others, but for the probe's size), sleeper (never
+// millisecond. Its own name says what it is like: liar (other pixels than the others, but for the probe), sleeper (never
 // ends), anything else (good). A job's option Declare=pause=MS makes it take so long, Declare=fail=1 makes it fail.
 #include <png.h>
 
@@ -81,7 +81,7 @@ int main(int argc, char** argv) {
 		std::fputs("standin: Parse Error: told to fail\n", stderr);
 		return 1;
 	}
-	const bool probe = width == 64 && height == 48;
+	const bool probe = keys["Input_File_Name"].find("probe.pov") != std::string::npos;
 	if (name == "sleeper" && !probe)
 		std::this_thread::sleep_for(std::chrono::hours(10));
 	std::this_thread::sleep_for(std::chrono::milliseconds(number("Declare=pause", 0)));
