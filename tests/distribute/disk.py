@@ -14,7 +14,7 @@ if "inside" not in sys.argv:
     print("skipped: no disk may be mounted here")
     sys.exit(77)
 
-from farm import BIN, ENV, WORK, Server, bhfarm, same, scene, start, wait
+from farm import BIN, ENV, WORK, Server, bare, bhfarm, frames_in, same, scene, start, wait
 from fault_lab import SANDBOX, Disk
 
 FULL = ("No space left on device", "disk is full")
@@ -114,14 +114,9 @@ assert os.listdir(desk.folder) == ["filler"], os.listdir(desk.folder)
 desk.empty()
 assert len(bhfarm("fetch", str(number), "--to", desk.folder, server=server).stdout.split()) == 5
 for frame in range(1, 5):
-    bare = WORK + "/bare.ini"
-    with open(bare, "w") as f:
-        f.write("Width=200\nHeight=100\nSubset_Start_Frame=%d\nOutput_File_Name=%s/bare.png\n" % (frame, WORK))
-    subprocess.run([BIN + "/standin"], env=dict(ENV, POVINI=bare), check=True)
+    bare(WORK + "/bare.png", 200, 100, frame)
     same(desk.folder + "/x%d.png" % frame, WORK + "/bare.png")
-count = subprocess.run(["ffprobe", "-v", "error", "-count_packets", "-select_streams", "v", "-show_entries", "stream=nb_read_packets", "-of", "csv=p=0", desk.folder + "/x.mp4"],
-                       capture_output=True, text=True)
-assert count.stdout.strip() == "4", count
+assert frames_in(desk.folder + "/x.mp4") == 4
 
 
 def restarted(*words):

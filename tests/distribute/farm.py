@@ -4,17 +4,15 @@ import atexit
 import json
 import os
 import shutil
-import signal
-import struct
 import subprocess
 import sys
 import tempfile
 import time
 import urllib.error
 import urllib.request
-import zlib
 
 sys.path.append(os.path.dirname(os.path.abspath(__file__)) + "/../overlay")
+import pictures # noqa: E402
 from povray import patiently # noqa: E402
 
 BIN = os.path.abspath(sys.argv[1])
@@ -79,33 +77,10 @@ def povray(ini, folder, *words):
 
 
 def pixels(name):
-    """Width, height, depth, colour type and the unfiltered rows of a PNG, by its definition (ISO/IEC 15948)."""
-    data = open(name, "rb").read()
-    assert data[:8] == b"\x89PNG\r\n\x1a\n", name
-    at, packed, head = 8, b"", None
-    while at < len(data):
-        size, kind = struct.unpack(">I4s", data[at:at + 8])
-        body = data[at + 8:at + 8 + size]
-        if kind == b"IHDR":
-            head = struct.unpack(">IIBB", body[:10])
-        elif kind == b"IDAT":
-            packed += body
-        at += 12 + size
-    width, height, depth, colour = head
-    step = {0: 1, 2: 3, 4: 2, 6: 4}[colour] * depth // 8
-    raw, rows, last = zlib.decompress(packed), [], bytes(width * step)
-    for y in range(height):
-        line = bytearray(raw[y * (width * step + 1):(y + 1) * (width * step + 1)])
-        how = line.pop(0)
-        for x in range(len(line)):
-            a = line[x - step] if x >= step else 0
-            b, c = last[x], last[x - step] if x >= step else 0
-            p = a + b - c
-            near = a if abs(p - a) <= abs(p - b) and abs(p - a) <= abs(p - c) else b if abs(p - b) <= abs(p - c) else c
-            line[x] = (line[x] + (0, a, b, (a + b) // 2, near)[how]) & 255
-        last = bytes(line)
-        rows.append(last)
-    return head, b"".join(rows)
+    """Width, height, depth, colour type and the bytes of a PNG's rows."""
+    with open(name, "rb") as f:
+        head, _, rows = pictures.unpacked_png(f.read())
+    return head, rows
 
 
 def same(a, b):
@@ -169,6 +144,30 @@ def bhfarm(*words, server=None, cwd=None, good=True):
     done = subprocess.run([BIN + "/bhfarm", *words], env=ENV, cwd=cwd, capture_output=True, text=True)
     assert not good or done.returncode == 0, "bhfarm %s: %s" % (" ".join(words), done.stderr)
     return done
+
+
+def new_token(name="token"):
+    """A token, in a file of that name too."""
+    token = bhfarm("token", "new").stdout.strip()
+    with open(WORK + "/" + name, "w") as f:
+        f.write(token + "\n")
+    return token
+
+
+def bare(to, width, height, frame, program=BIN + "/standin"):
+    """A frame as the stand-in makes it without a farm."""
+    ini = WORK + "/bare.ini"
+    with open(ini, "w") as f:
+        f.write("Width=%d\nHeight=%d\nSubset_Start_Frame=%d\nOutput_File_Name=%s\n" % (width, height, frame, to))
+    subprocess.run([program], env=dict(ENV, POVINI=ini), check=True)
+
+
+def frames_in(film):
+    """How many there are by ffprobe's count."""
+    done = subprocess.run(["ffprobe", "-v", "error", "-count_packets", "-select_streams", "v", "-show_entries", "stream=nb_read_packets", "-of", "csv=p=0", film],
+                          capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return int(done.stdout)
 
 
 def wait(condition, what, process=None, log=None, seconds=120):

@@ -6,24 +6,14 @@ import shutil
 import sqlite3
 import struct
 
-from farm import WORK, pixels
-
-
-def chunks(name):
-    """A PNG's chunks but for its pixels: kind and content."""
-    data, at, found = open(name, "rb").read(), 8, []
-    while at < len(data):
-        size, kind = struct.unpack(">I4s", data[at:at + 8])
-        if kind != b"IDAT":
-            found.append((kind, data[at + 8:at + 8 + size]))
-        at += 12 + size
-    return found
+from farm import WORK, pictures
 
 
 def digest(name, first=0, rows=None):
     """The hash by which the ledger names a strip's pixels: of a line that says their kind, and the rows."""
-    (_, height, depth, colours), raw = pixels(name)
-    gamma, row = dict(chunks(name)).get(b"gAMA"), len(raw) // height
+    with open(name, "rb") as f:
+        (_, height, depth, colours), chunks, raw = pictures.unpacked_png(f.read())
+    gamma, row = chunks.get("gAMA"), len(raw) // height
     line = b"png %d %d %d\n" % (colours, depth, struct.unpack(">I", gamma)[0] if gamma else 0)
     return hashlib.sha256(line + raw[first * row:(first + (rows or height)) * row]).hexdigest()
 

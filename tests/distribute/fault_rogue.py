@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: AGPL-3.0-or-later
 """A client that speaks the protocol and means no good: late, double, truncated, corrupt and foreign reports. It learns from each answer whether the server let it."""
-import hashlib
 import queue
 import random
 import socket
@@ -9,9 +8,7 @@ import time
 import traceback
 import urllib.error
 
-
-def sha(data):
-    return hashlib.sha256(data).hexdigest()
+from hand import send, sha
 
 
 class Rogue:
@@ -35,7 +32,7 @@ class Rogue:
         return self.server.ask(path, body, **more)
 
     def put(self, lease, data, says=None):
-        return self.ask("/v1/leases/%d/strip?sha256=%s&seconds=0.1" % (lease, says or sha(data)), raw=data, method="PUT")
+        return send(self.ask, lease, data, says)
 
     def accepted(self, answer):
         return answer[0] == 200 and answer[1]["accepted"]

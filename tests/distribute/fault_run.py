@@ -1,26 +1,22 @@
 # SPDX-License-Identifier: AGPL-3.0-or-later
 """One run of faults.py: what happens when, and what must be true in the end."""
-import hashlib
 import os
 import random
 import re
 import shutil
 import signal
-import struct
-import subprocess
 import sys
 import time
 import urllib.error
-import zlib
 
-from farm import BIN, ENV, WORK, bhfarm, pixels, povray, same, scene, wait
+from farm import BIN, WORK, bare, bhfarm, frames_in, pictures, povray, same, scene, wait
 import fault_check
 from fault_lab import Lab, Worker
 from fault_proxy import Proxy
 from fault_rogue import Rogue
+from hand import JOB, give, png
 
-SPEC = {"name": "x", "options": ["Input_File_Name=scene.pov"], "width": 32, "height": 40, "animation": True, "first": 1, "last": 10, "step": 1, "digits": 2,
-        "format": "png", "bits": 16, "strip_rows": 2, "film_rate": 25, "client_key": "one"}
+SPEC = dict(JOB, width=32, height=40, last=10, digits=2, bits=16, strip_rows=2, film_rate=25, client_key="one")
 PER = SPEC["height"] // SPEC["strip_rows"]
 MISDEEDS = ("vanish", "late", "foreign", "double", "double", "truncated", "corrupt", "half", "nonsense")
 LIAR = """#!/bin/bash
@@ -56,13 +52,11 @@ def program(name, text=None):
 
 def strip_file(whole, first, rows, lie):
     """A strip as a good worker cuts it from a picture, or with other pixels."""
-    (width, height, depth, colours), raw = pixels(whole)
+    with open(whole, "rb") as f:
+        (_, height, depth, colours), chunks, raw = pictures.unpacked_png(f.read())
     row = len(raw) // height
-    body = b"".join(b"\0" + bytes(b ^ (255 if lie else 0) for b in raw[y * row:(y + 1) * row]) for y in range(first, first + rows))
-    head = struct.pack(">IIBBBBB", width, rows, depth, colours, 0, 0, 0)
-    extra = [(kind, data) for kind, data in fault_check.chunks(whole) if kind in (b"gAMA", b"sRGB")]
-    return b"\x89PNG\r\n\x1a\n" + b"".join(struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-                                            for kind, data in [(b"IHDR", head), *extra, (b"IDAT", zlib.compress(body)), (b"IEND", b"")])
+    body = [bytes(b ^ (255 if lie else 0) for b in raw[y * row:(y + 1) * row]) for y in range(first, first + rows)]
+    return png(body, depth, colours, [(kind.encode(), data) for kind, data in chunks.items() if kind in ("gAMA", "sRGB")])
 
 
 class Run:
@@ -80,8 +74,9 @@ class Run:
             self.job = int(bhfarm("submit", ini, "--strips", str(PER), server=self.lab.server).stdout)
         else:
             good, liar, sleeper = program("good"), program("liar"), program("sleeper")
-            self.bare(good)
-            self.job = self.submit()
+            for frame in range(1, 11):
+                bare(self.frame(frame), SPEC["width"], SPEC["height"], frame, good)
+            self.job = give(self.lab.server.ask, **dict(SPEC, options=SPEC["options"] + ["Declare=pause=60"]))
         rows = SPEC["strip_rows"]
         self.truth = [fault_check.digest(self.frame(f), y, rows) for f in range(1, 11) for y in range(0, SPEC["height"], rows)]
         self.others = [Worker("liar", liar, self.proxy, False), Worker("full", good, self.proxy, False)]
@@ -94,22 +89,6 @@ class Run:
 
     def frame(self, number):
         return "%s/x%02d.png" % (self.reference, number)
-
-    def bare(self, good):
-        for frame in range(1, 11):
-            ini = WORK + "/bare.ini"
-            with open(ini, "w") as f:
-                f.write("Width=%d\nHeight=%d\nSubset_Start_Frame=%d\nOutput_File_Name=%s/x%02d.png\n" % (SPEC["width"], SPEC["height"], frame, self.reference, frame))
-            subprocess.run([good], env=dict(ENV, POVINI=ini), check=True)
-
-    def submit(self):
-        text = b"sphere { }\n"
-        name = hashlib.sha256(text).hexdigest()
-        bundle = {"files": [{"bytes": len(text), "name": "scene.pov", "sha256": name}], "folder": ""}
-        ask = self.lab.server.ask
-        bundle_id = ask("/v1/bundles", bundle)[1]["bundle"]
-        ask("/v1/files/" + name, raw=text, method="PUT")
-        return ask("/v1/jobs", dict(SPEC, bundle=bundle_id, options=SPEC["options"] + ["Declare=pause=60"]))[1]["job"]
 
     def happen(self, what, whom, seconds):
         """A fault; returns what ends it after that time, if anything must."""
@@ -189,9 +168,7 @@ class Run:
         bhfarm("fetch", str(self.job), "--to", out, server=self.lab.server)
         for frame in range(1, 11):
             same("%s/x%02d.png" % (out, frame), self.frame(frame))
-        count = subprocess.run(["ffprobe", "-v", "error", "-count_packets", "-select_streams", "v", "-show_entries", "stream=nb_read_packets", "-of", "csv=p=0", out + "/x.mp4"],
-                               capture_output=True, text=True)
-        assert count.stdout.strip() == "10", count
+        assert frames_in(out + "/x.mp4") == 10
         log = self.said()
         assert "worker liar is set aside: its pixels" in log, "the liar was not named\n" + log[-3000:]
         assert not re.search("worker (good|full|sleeper)[0-9]* is set aside", log), log

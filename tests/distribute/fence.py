@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: AGPL-3.0-or-later
 """Hostile scenes sent by hand, past bhfarm's own checks: none reads, writes or runs what is not its own, nor outlives its limits, and the submitter is told which.
 Each deed is then done without the fence, where it succeeds: the scenes try in earnest."""
-import hashlib
 import http.server
 import itertools
 import json
@@ -14,7 +13,8 @@ import sys
 import threading
 import time
 
-from farm import BIN, ENV, FENCED, WORK, Server, bhfarm, include_folder, start, wait
+from farm import BIN, ENV, FENCED, WORK, Server, bhfarm, include_folder, patiently, start, wait
+from hand import JOB, bundle_of, sha
 
 if not FENCED:
     print("bubblewrap does not work here")
@@ -41,8 +41,9 @@ with open(include_folder() + "/timrom.ttf", "rb") as f, open(SECRET + "/s.ttf", 
 put(WORK + "/none.ini", "Verbose=Off\n")
 kinds = {"png": "N", "tga": "T", "ppm": "P", "jpeg": "J", "hdr": "H", "exr": "E"}
 for kind, letter in kinds.items():
-    subprocess.run([BIN + "/povray", "+I" + SECRET + "/s.pov", "+F" + letter, "+O%s/s.%s" % (SECRET, kind), "+W8", "+H8", "-D"], env=dict(ENV, POVINI=WORK + "/none.ini"),
-                   capture_output=True, check=True)
+    words = [BIN + "/povray", "+I" + SECRET + "/s.pov", "+F" + letter, "+O%s/s.%s" % (SECRET, kind), "+W8", "+H8", "-D"]
+    done = patiently(lambda: subprocess.run(words, env=dict(ENV, POVINI=WORK + "/none.ini"), capture_output=True, text=True), lambda run: run.stderr)
+    assert done.returncode == 0, done.stderr
 listener = socket.create_server(("127.0.0.1", 0))
 URL = "http://127.0.0.1:%d/x" % listener.getsockname()[1]
 
@@ -101,23 +102,17 @@ leases = itertools.count(1)
 
 def send(text, options=(), files=()):
     """A strip as no bhfarm would send it; its lease and the bundle's name."""
-    listed = []
-    for name, content in sorted(dict(files, **{"scene.pov": text}).items()):
-        data = content.encode()
-        digest = hashlib.sha256(data).hexdigest()
-        Desk.files[digest] = data
-        listed.append({"bytes": len(data), "name": name, "sha256": digest})
-    bundle = {"files": listed, "folder": ""}
-    digest = hashlib.sha256(json.dumps(bundle, separators=(",", ":"), sort_keys=True).encode()).hexdigest()
-    Desk.bundles[digest] = bundle
+    contents = {name: content.encode() for name, content in dict(files, **{"scene.pov": text}).items()}
+    Desk.files.update((sha(data), data) for data in contents.values())
+    bundle, name = bundle_of(contents)
+    Desk.bundles[name] = bundle
     options = list(options)
     if not any(o.startswith("Input_File_Name") for o in options):
         options.append("Input_File_Name=scene.pov")
     lease = next(leases)
-    Desk.tasks.put({"lease": lease, "job": 1, "frame": 0, "row": 0, "rows": 12, "spec": {
-        "name": "x", "bundle": digest, "options": options, "width": 16, "height": 12, "animation": False, "first": 0, "last": 0, "step": 1, "digits": 0, "format": "png", "bits": 8,
-        "strip_rows": 12}})
-    return lease, digest
+    spec = dict(JOB, bundle=name, options=options, width=16, height=12, animation=False, first=0, last=0, digits=0, strip_rows=12)
+    Desk.tasks.put({"lease": lease, "job": 1, "frame": 0, "row": 0, "rows": 12, "spec": spec})
+    return lease, name
 
 
 def outcome(lease):

@@ -2,7 +2,6 @@
 """A film through a server and two workers, one killed (-9) at work and the server too, has the pixels of one povray's whole frames."""
 import os
 import signal
-import sys
 import time
 
 from farm import WORK, Server, bhfarm, pixels, povray, same, scene, wait

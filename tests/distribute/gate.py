@@ -10,11 +10,9 @@ import socket
 import time
 import urllib.parse
 
-from farm import WORK, Server, bhfarm, wait
+from farm import WORK, Server, new_token, wait
 
-TOKEN = bhfarm("token", "new").stdout.strip()
-with open(WORK + "/token", "w") as f:
-    f.write(TOKEN + "\n")
+TOKEN = new_token()
 server = Server("--token-file", WORK + "/token", "--idle", "2")
 
 

@@ -15,7 +15,8 @@ if "inside" not in sys.argv:
     print("skipped: network namespaces are not allowed here")
     sys.exit(77)
 
-from farm import BIN, ENV, WORK, bhfarm, running, same, scene, wait
+from authority import authority, certify
+from farm import BIN, ENV, WORK, bare, new_token, running, same, scene, wait
 from fault_lab import SANDBOX
 
 subprocess.run(["mount", "-t", "tmpfs", "none", "/run"], check=True)
@@ -41,19 +42,11 @@ def on(host, *words):
     return ["nsenter", "--net=/run/netns/" + host, BIN + "/" + words[0], *words[1:]]
 
 
-def openssl(*words):
-    subprocess.run(["openssl", *words], cwd=WORK, check=True, capture_output=True)
-
-
 for name in ("ca", "other"):
-    openssl("req", "-x509", "-newkey", "rsa:2048", "-nodes", "-keyout", name + ".key", "-out", name + ".pem", "-days", "2", "-subj", "/CN=" + name)
-openssl("req", "-newkey", "rsa:2048", "-nodes", "-keyout", "server.key", "-out", "server.csr", "-subj", "/CN=server")
-with open(WORK + "/names", "w") as f:
-    f.write("subjectAltName=IP:" + HOSTS["server"] + "\n")
-openssl("x509", "-req", "-in", "server.csr", "-CA", "ca.pem", "-CAkey", "ca.key", "-CAcreateserial", "-out", "server.pem", "-days", "2", "-extfile", "names")
+    authority(name)
+certify("ca", HOSTS["server"])
 for name in ("token", "wrong"):
-    with open(WORK + "/" + name, "w") as f:
-        f.write(bhfarm("token", "new").stdout)
+    new_token(name)
 ENV.update(BHFARM_SERVER="https://%s:7700" % HOSTS["server"], BHFARM_TOKEN_FILE=WORK + "/token", BHFARM_CA=WORK + "/ca.pem")
 
 
@@ -102,8 +95,8 @@ def submit(pause, *words):
 
 
 # The server: not without a token, where others can come.
-bare = subprocess.run(on("server", "bhfarm-server", "--listen", "10.77.0.1:7700", "--spool", WORK + "/spool"), env={**ENV, "BHFARM_TOKEN_FILE": ""}, capture_output=True, text=True)
-assert bare.returncode == 1 and "--token-file" in bare.stderr and bare.stderr.count("\n") == 1, bare
+naked = subprocess.run(on("server", "bhfarm-server", "--listen", "10.77.0.1:7700", "--spool", WORK + "/spool"), env={**ENV, "BHFARM_TOKEN_FILE": ""}, capture_output=True, text=True)
+assert naked.returncode == 1 and "--token-file" in naked.stderr and naked.stderr.count("\n") == 1, naked
 assert "no answer from https://10.77.0.1:7700" in desk("status", code=1)
 serving = ("bhfarm-server", "--listen", "10.77.0.1:7700", "--spool", WORK + "/spool", "--lease", "2", "--check-every", "0", "--tls-cert", WORK + "/server.pem", "--tls-key", WORK + "/server.key")
 server = begin("server", *serving)
@@ -161,11 +154,8 @@ assert desk("fetch", str(number), "--to", WORK + "/out").split() == [WORK + "/ou
 again = desk("fetch", str(number), "--to", WORK + "/out", "--json")
 assert again == {"files": [WORK + "/out/" + n for n in names]}, again
 for frame in range(1, 5):
-    bare = WORK + "/bare.ini"
-    with open(bare, "w") as f:
-        f.write("Width=64\nHeight=40\nSubset_Start_Frame=%d\nOutput_File_Name=%s/bare%d.png\n" % (frame, WORK, frame))
-    subprocess.run([BIN + "/standin"], env=dict(ENV, POVINI=bare), check=True)
-    same(WORK + "/out/x%d.png" % frame, WORK + "/bare%d.png" % frame)
+    bare(WORK + "/bare.png", 64, 40, frame)
+    same(WORK + "/out/x%d.png" % frame, WORK + "/bare.png")
 assert "is done" in desk("cancel", str(number), code=1) and "only one that failed" in desk("retry", str(number), code=1)
 
 # A job that fails says which strip and why; retry makes it run again. Cancel, remove.

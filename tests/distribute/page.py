@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: AGPL-3.0-or-later
 """The page, in a real browser: signing in, a job watched to its end, paused, cancelled, failed; strangers' text, a phone, a film of 10,000 frames, a server
 that starts over."""
+import functools
 import json
 import os
 import signal
 
 from browser import Browser
-from farm import ENV, WORK, Server, bhfarm, scene, wait
+from farm import ENV, WORK, Server, bhfarm, new_token, scene, wait
 
-TOKEN = bhfarm("token", "new").stdout.strip()
-with open(WORK + "/token", "w") as f:
-    f.write(TOKEN + "\n")
+TOKEN = new_token()
 ENV["BHFARM_TOKEN_FILE"] = WORK + "/token"
 server = Server("--token-file", WORK + "/token", "--check-every", "0")
+ask = functools.partial(server.ask, token=TOKEN)
 browser = Browser()
 STAGE = "document.getElementById('stage').textContent"
 # Text on what is behind it, by WCAG 2.2's formula, for all that is in sight.
@@ -32,10 +32,6 @@ CONTRAST = """(() => {
         if (ratio < worst[0]) worst = [ratio, e.className + ' ' + walk.currentNode.data.trim()];
     }
     return worst; })()"""
-
-
-def ask(*a, **k):
-    return server.ask(*a, token=TOKEN, **k)
 
 
 def quiet(*expected):

@@ -7,13 +7,12 @@ import sys
 import time
 
 from browser import Browser
-from farm import BIN, WORK, Server, bhfarm, scene, wait
+from farm import WORK, Server, bhfarm, new_token, scene, wait
 
 to = os.path.abspath(sys.argv[2])
 os.makedirs(to, exist_ok=True)
 root = os.path.dirname(os.path.abspath(__file__)) + "/../.."
-with open(WORK + "/token", "w") as f:
-    f.write(bhfarm("token", "new").stdout)
+new_token()
 open_one = Server("--check-every", "0")
 browser = Browser(1280, 900)
 

@@ -1,53 +1,25 @@
 # SPDX-License-Identifier: AGPL-3.0-or-later
 """Runs each curl line of docs/PROTOCOL.md; then what a server must refuse: no token, a wrong one, bodies that are too long, damaged or late."""
-import hashlib
+import functools
 import json
 import os
 import socket
-import struct
 import subprocess
 import time
-import zlib
 
-from farm import BIN, ENV, WORK, Server, bhfarm, wait
+from farm import BIN, ENV, WORK, Server, new_token, wait
+from hand import BUNDLE, BUNDLE_ID, JOB, ME, SCENE, bring, png, send, sha
 
-TOKEN = bhfarm("token", "new").stdout.strip()
+TOKEN = new_token()
 assert len(TOKEN) == 64
-with open(WORK + "/token", "w") as f:
-    f.write(TOKEN + "\n")
 server = Server("--token-file", WORK + "/token", "--lease", "5")
-
-
-def sha(data):
-    return hashlib.sha256(data).hexdigest()
-
-
-scene = b"camera { }\n"
-bundle = {"files": [{"bytes": len(scene), "name": "scene.pov", "sha256": sha(scene)}], "folder": ""}
-bundle_id = sha(json.dumps(bundle, separators=(",", ":"), sort_keys=True).encode())
-job = {"name": "x", "bundle": bundle_id, "options": ["Input_File_Name=scene.pov"], "width": 8, "height": 4, "animation": True, "first": 1, "last": 2, "step": 1,
-       "digits": 1, "format": "png", "bits": 8, "strip_rows": 4, "film_rate": 25}
-
-
-def png(width, height, grey):
-    """A PNG by the book."""
-
-    def chunk(kind, body):
-        return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
-    rows = (b"\0" + bytes([grey] * 3 * width)) * height
-    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
-
-
-strip = png(8, 4, 100)
-for name, data in (("bundle.json", json.dumps(bundle).encode()), ("job.json", json.dumps(job).encode()), ("scene.pov", scene), ("strip.png", strip)):
+ask = functools.partial(server.ask, token=TOKEN)
+job = dict(JOB, film_rate=25)
+strip = png([bytes([100] * 3 * 8)] * 4)
+for name, data in (("bundle.json", json.dumps(BUNDLE).encode()), ("job.json", json.dumps(job).encode()), ("scene.pov", SCENE), ("strip.png", strip)):
     with open(WORK + "/" + name, "wb") as f:
         f.write(data)
-variables = {"S": server.url, "T": TOKEN, "FILE": sha(scene), "BUNDLE": bundle_id, "STRIP": sha(strip)}
-ME = "/v1/workers/a-worker-of-mine"
-
-
-def ask(*a, **k):
-    return server.ask(*a, token=TOKEN, **k)
+variables = {"S": server.url, "T": TOKEN, "FILE": sha(SCENE), "BUNDLE": BUNDLE_ID, "STRIP": sha(strip)}
 
 
 def curl(line):
@@ -71,7 +43,7 @@ for line in lines:
     if line.endswith("/drain"): # before it gets nothing more: the rest of the film
         while ask("/v1/jobs/" + variables["J"])[1]["strips_done"] < 2:
             lease = take()
-            assert ask("/v1/leases/%s/strip?sha256=%s" % (lease, sha(strip)), raw=strip, method="PUT")[1]["accepted"]
+            assert send(ask, lease, strip)[1]["accepted"]
         wait(lambda: ask("/v1/jobs/" + variables["J"])[1]["stage"] == "done", "the film")
     done = curl(line)
     if "/v1/events" in line:
@@ -97,7 +69,7 @@ def answer(part):
     return next(a for l, a in answers.items() if part in l)
 
 
-assert json.loads(answer("@bundle.json")) == {"bundle": bundle_id, "missing": [sha(scene)]}
+assert json.loads(answer("@bundle.json")) == {"bundle": BUNDLE_ID, "missing": [sha(SCENE)]}
 assert answer("frames/x1.png")[:8] == b"\x89PNG\r\n\x1a\n"
 assert b"ftyp" in answer("/film")[:16]
 assert json.loads(answer("/pictures"))["pictures"] == ["x1.png", "x2.png"]
@@ -112,7 +84,7 @@ for route in known:
 # Refusals: one line each, and the server goes on.
 LONG = b"x" * (9 << 20)
 assert server.ask("/health")[0] == 200
-for path in ("/v1/jobs", "/v1/workers", "/v1/events", "/v1/files/" + sha(scene)):
+for path in ("/v1/jobs", "/v1/workers", "/v1/events", "/v1/files/" + sha(SCENE)):
     for token in (None, "wrong", TOKEN[:-1], TOKEN + "0"):
         status, got = server.ask(path, token=token)
         assert status == 401 and "token" in got["error"], (path, token, status, got)
@@ -126,22 +98,20 @@ for path, body, method, expected in (
     assert status == expected and "\n" not in got["error"], (path, status, got)
 
 # Strips that are damaged, of the wrong size, or no picture: none is taken, and the lease's strip goes on.
-ask("/v1/bundles", bundle)
-ask("/v1/files/" + sha(scene), raw=scene, method="PUT")
+bring(ask)
 assert ask("/v1/workers", {"id": "a-worker-of-mine", "name": "x", "slots": 1})[0] == 201
 assert ask("/v1/workers", {"id": "another-worker", "name": "y", "slots": 1, "povray": "3.8"})[0] == 409
 number = ask("/v1/jobs", dict(job, animation=False, first=0, last=0, film_rate=0))[1]["job"]
 lease = take()
-where = "/v1/leases/%s/strip?sha256=" % lease
-assert ask(where + sha(strip), raw=strip[:-1], method="PUT")[0] == 422
-assert ask(where + sha(strip), raw=strip + b"x", method="PUT")[0] == 422
+assert send(ask, lease, strip[:-1], sha(strip))[0] == 422
+assert send(ask, lease, strip + b"x", sha(strip))[0] == 422
 broken = strip[:-20] + b"\0" + strip[-19:]
-got = ask(where + sha(broken), raw=broken, method="PUT")[1]
+got = send(ask, lease, broken)[1]
 assert got["accepted"], got # as a failure of the worker's
 wait(lambda: ask("/v1/jobs/%d" % number)[1]["strips_out"] == 0, "the strip to come back")
-other = png(8, 5, 100)
+other = png([bytes([100] * 3 * 8)] * 5)
 lease = take()
-ask("/v1/leases/%s/strip?sha256=%s" % (lease, sha(other)), raw=other, method="PUT")
+send(ask, lease, other)
 assert ask("/v1/jobs/%d" % number)[1]["strips_done"] == 0
 failures = ask("/v1/jobs/%d/log" % number)[1]["failures"]
 assert "no good picture" in failures[0]["line"] and "8x5" in failures[1]["line"], failures

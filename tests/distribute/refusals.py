@@ -3,12 +3,11 @@
 import fcntl
 import os
 import re
-import signal
-import socket
 import subprocess
 import time
 
-from farm import BIN, ENV, WORK, Server, bhfarm, scene, wait
+from authority import authority, openssl
+from farm import BIN, ENV, WORK, Server, bhfarm, scene
 
 folder = WORK + "/scene"
 ini = scene(folder, frames=5)
@@ -66,18 +65,12 @@ for program in (["bhfarm", "status"], ["bhfarm-worker"]):
     refused("cannot read /nosuch", *program, "--server", server.url, "--ca", "/nosuch")
 refused("no answer from http://127.0.0.1:1", "bhfarm", "status", "--server", "127.0.0.1:1")
 refused("there is no /nosuch", "bhfarm", "status", "--server", server.url + "/nosuch")
-
-
-def openssl(*words):
-    subprocess.run(["openssl", *words], cwd=WORK, check=True, capture_output=True)
-
-
 openssl("req", "-x509", "-newkey", "rsa:2048", "-nodes", "-keyout", "key.pem", "-out", "good.pem", "-days", "2", "-subj", "/CN=127.0.0.1", "-addext", "subjectAltName=IP:127.0.0.1")
 openssl("req", "-new", "-key", "key.pem", "-out", "old.csr", "-subj", "/CN=127.0.0.1")
 write("names", b"subjectAltName=IP:127.0.0.1\n")
 openssl("x509", "-req", "-in", "old.csr", "-signkey", "key.pem", "-out", "old.pem", "-days", "-1", "-extfile", "names")
-openssl("req", "-x509", "-newkey", "rsa:2048", "-nodes", "-keyout", "otherkey.pem", "-out", "other.pem", "-days", "2", "-subj", "/CN=127.0.0.1")
-refused("cannot use the key", *serve, "--tls-cert", WORK + "/good.pem", "--tls-key", WORK + "/otherkey.pem")
+authority("other")
+refused("cannot use the key", *serve, "--tls-cert", WORK + "/good.pem", "--tls-key", WORK + "/other.key")
 expired = Server("--tls-cert", WORK + "/old.pem", "--tls-key", WORK + "/key.pem")
 secure = Server("--tls-cert", WORK + "/good.pem", "--tls-key", WORK + "/key.pem")
 for program in (["bhfarm", "status"], ["bhfarm-worker"]):

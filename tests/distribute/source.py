@@ -5,7 +5,7 @@ import os
 import subprocess
 import tarfile
 
-from farm import BIN, ENV, WORK, Server, bhfarm
+from farm import BIN, ENV, WORK, Server
 
 root = os.path.normpath(os.path.dirname(os.path.abspath(__file__)) + "/../..")
 upstream = os.path.normpath(BIN + "/../../upstream/pristine")

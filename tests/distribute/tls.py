@@ -1,30 +1,19 @@
 # SPDX-License-Identifier: AGPL-3.0-or-later
 """A lab with tokens and TLS of its own authority: let in with both, and with one line of refusal without either. A worker of another povray is turned away."""
 import os
-import signal
 import subprocess
 
-from farm import BIN, ENV, WORK, Server, bhfarm, povray, same, scene, start, wait
+from authority import authority, certify
+from farm import BIN, ENV, WORK, Server, bhfarm, new_token, povray, same, scene
 
 ini = scene(WORK + "/scene")
 os.makedirs(WORK + "/reference")
 povray(ini, WORK + "/scene", "+O" + WORK + "/reference/film")
-
-
-def openssl(*words):
-    subprocess.run(["openssl", *words], cwd=WORK, check=True, capture_output=True)
-
-
 for name in ("ca", "other"):
-    openssl("req", "-x509", "-newkey", "rsa:2048", "-nodes", "-keyout", name + ".key", "-out", name + ".pem", "-days", "2", "-subj", "/CN=" + name)
-openssl("req", "-newkey", "rsa:2048", "-nodes", "-keyout", "server.key", "-out", "server.csr", "-subj", "/CN=127.0.0.1")
-with open(WORK + "/names", "w") as f:
-    f.write("subjectAltName=IP:127.0.0.1\n")
-openssl("x509", "-req", "-in", "server.csr", "-CA", "ca.pem", "-CAkey", "ca.key", "-CAcreateserial", "-out", "server.pem", "-days", "2", "-extfile", "names")
-with open(WORK + "/token", "w") as f:
-    f.write(bhfarm("token", "new").stdout)
-with open(WORK + "/wrong", "w") as f:
-    f.write(bhfarm("token", "new").stdout)
+    authority(name)
+certify("ca", "127.0.0.1")
+for name in ("token", "wrong"):
+    new_token(name)
 server = Server("--token-file", WORK + "/token", "--tls-cert", WORK + "/server.pem", "--tls-key", WORK + "/server.key")
 assert server.url.startswith("https://")
 ENV["BHFARM_CA"] = WORK + "/ca.pem"

@@ -1,37 +1,18 @@
 # SPDX-License-Identifier: AGPL-3.0-or-later
 """What the page stands on: the stream of changes, previews of frames, and the door for browsers. Workers and strips are made up here."""
-import hashlib
+import functools
 import http.client
 import json
 import struct
 import time
 import urllib.parse
-import zlib
 
-from farm import ENV, WORK, Server, bhfarm, pixels, wait
+from farm import ENV, WORK, Server, bhfarm, new_token, pixels, wait
+from hand import BUNDLE, JOB, bring, png, send
 
-TOKEN = bhfarm("token", "new").stdout.strip()
-with open(WORK + "/token", "w") as f:
-    f.write(TOKEN + "\n")
+TOKEN = new_token()
 server = Server("--token-file", WORK + "/token", "--check-every", "0")
-
-
-def ask(*a, **k):
-    return server.ask(*a, token=TOKEN, **k)
-
-
-def sha(data):
-    return hashlib.sha256(data).hexdigest()
-
-
-def png(rows):
-    """16-bit RGB rows as a PNG by the book, gamma as povray's."""
-
-    def chunk(kind, body):
-        return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
-    data = b"".join(b"\0" + struct.pack(">%dH" % len(r), *r) for r in rows)
-    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", len(rows[0]) // 3, len(rows), 16, 2, 0, 0, 0)) + chunk(b"sRGB", b"\0")
-            + chunk(b"IDAT", zlib.compress(data)) + chunk(b"IEND", b""))
+ask = functools.partial(server.ask, token=TOKEN)
 
 
 class Stream:
@@ -59,13 +40,9 @@ class Stream:
 
 
 # The stream: first everything, then what changes, as it stands.
-scene = b"camera { }\n"
-bundle = {"files": [{"bytes": len(scene), "name": "scene.pov", "sha256": sha(scene)}], "folder": ""}
-bundle_id = ask("/v1/bundles", bundle)[1]["bundle"]
-ask("/v1/files/" + sha(scene), raw=scene, method="PUT")
+bring(ask)
 W, H, ROWS = 60, 45, 10  # five strips, the last of 5 rows
-job = {"name": "x", "bundle": bundle_id, "options": [], "width": W, "height": H, "animation": True, "first": 3, "last": 7, "step": 2, "digits": 2, "format": "png",
-       "bits": 16, "strip_rows": ROWS, "film_rate": 0}
+job = dict(JOB, options=[], width=W, height=H, first=3, last=7, step=2, digits=2, bits=16, strip_rows=ROWS)
 stream = Stream(server)
 first = stream.next()
 assert first["event"] == "all" and first["jobs"] == [] and first["workers"] == [], first
@@ -100,8 +77,8 @@ def picture(frame, row, rows):
 
 
 def report(task):
-    data = png(picture(task["frame"], task["row"], task["rows"]))
-    got = ask("/v1/leases/%d/strip?sha256=%s" % (task["lease"], sha(data)), raw=data, method="PUT")
+    rows = [struct.pack(">%dH" % len(r), *r) for r in picture(task["frame"], task["row"], task["rows"])]
+    got = send(ask, task["lease"], png(rows, depth=16, more=[(b"sRGB", b"\0")])) # gamma as povray's
     assert got[0] == 200 and got[1]["accepted"], got
 
 
@@ -257,7 +234,7 @@ connection.close()
 ENV.pop("BHFARM_TOKEN_FILE")
 open_one = Server()
 connection = http.client.HTTPConnection("127.0.0.1", open_one.port, timeout=30)
-there = "/v1/bundles", json.dumps(bundle)
+there = "/v1/bundles", json.dumps(BUNDLE)
 assert plain("POST", *there)[0] == 201 and plain("POST", *there, Origin=open_one.url)[0] == 201
 assert plain("POST", *there, Origin="http://evil.example")[0] == 403 and plain("POST", *there, Sec_Fetch_Site="cross-site")[0] == 403
 assert plain("GET", "/v1/jobs", Host="localhost:1")[0] == 200 and plain("GET", "/v1/jobs", Host="127.evil.example")[0] == 403 and plain("GET", "/", Host="evil.example:80")[0] == 403

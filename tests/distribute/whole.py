@@ -3,7 +3,7 @@
 import os
 import subprocess
 
-from farm import BIN, ENV, WORK, bhfarm, include_folder, povray, same, scene
+from farm import WORK, bhfarm, povray, same, scene
 
 folder = WORK + "/project/scenes"
 scene(folder)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: AGPL-3.0-or-later
 """Damaged requests, byte by byte over the wire, to a live bhfarm-server: each gets an answer below 500 in one line or a closed connection, and the server goes on and
 knows what it knew. wire.py BIN [SECONDS [SEED]]"""
-import hashlib
+import functools
 import json
 import random
 import re
@@ -9,22 +9,14 @@ import socket
 import sys
 import time
 
-from farm import WORK, Server, bhfarm
+from farm import WORK, Server, new_token
+from hand import BUNDLE, BUNDLE_ID, HELLO, JOB, ME, SCENE, give, sha
 
 SECONDS = float(sys.argv[2]) if len(sys.argv) > 2 else 6
 random.seed(int(sys.argv[3]) if len(sys.argv) > 3 else 1)
-TOKEN = bhfarm("token", "new").stdout.strip()
-with open(WORK + "/token", "w") as f:
-    f.write(TOKEN)
+TOKEN = new_token()
 server = Server("--token-file", WORK + "/token")
-SCENE = b"camera { }\n"
-SHA = hashlib.sha256(SCENE).hexdigest()
-bundle = {"files": [{"bytes": len(SCENE), "name": "scene.pov", "sha256": SHA}], "folder": ""}
-BUNDLE = hashlib.sha256(json.dumps(bundle, separators=(",", ":"), sort_keys=True).encode()).hexdigest()
-job = {"name": "x", "bundle": BUNDLE, "options": ["Input_File_Name=scene.pov"], "width": 8, "height": 4, "animation": True, "first": 1, "last": 2, "step": 1,
-       "digits": 1, "format": "png", "bits": 8, "strip_rows": 4, "film_rate": 25}
-ME = "/v1/workers/a-worker-of-mine"
-HELLO = {"id": "a-worker-of-mine", "name": "wire", "slots": 1, "povray": "3.7", "probe": ""}
+SHA = sha(SCENE)
 
 
 def request(method, path, body=b"", headers=()):
@@ -35,19 +27,18 @@ def request(method, path, body=b"", headers=()):
     return ("\r\n".join(lines) + "\r\n\r\n").encode() + body
 
 
-assert server.ask("/v1/bundles", bundle, token=TOKEN)[0] == 201
-assert server.ask("/v1/files/" + SHA, raw=SCENE, method="PUT", token=TOKEN)[0] == 201
-assert server.ask("/v1/jobs", job, token=TOKEN)[1] == {"job": 1}
-assert server.ask("/v1/workers", HELLO, token=TOKEN)[0] == 201
-lease = server.ask(ME + "/take", {"wait": 1}, token=TOKEN)[1]["lease"]
-GOOD = [request("GET", "/health"), request("POST", "/v1/bundles", bundle), request("PUT", "/v1/files/" + SHA, SCENE), request("GET", "/v1/bundles/" + BUNDLE),
-        request("GET", "/v1/files/" + SHA), request("POST", "/v1/jobs", dict(job, client_key="one")), request("GET", "/v1/jobs"), request("GET", "/v1/jobs/1/strips"),
+ask = functools.partial(server.ask, token=TOKEN)
+assert give(ask, film_rate=25) == 1
+assert ask("/v1/workers", HELLO)[0] == 201
+lease = ask(ME + "/take", {"wait": 1})[1]["lease"]
+GOOD = [request("GET", "/health"), request("POST", "/v1/bundles", BUNDLE), request("PUT", "/v1/files/" + SHA, SCENE), request("GET", "/v1/bundles/" + BUNDLE_ID),
+        request("GET", "/v1/files/" + SHA), request("POST", "/v1/jobs", dict(JOB, film_rate=25, client_key="one")), request("GET", "/v1/jobs"), request("GET", "/v1/jobs/1/strips"),
         request("GET", "/v1/jobs/1/frames/x1.png?size=1"), request("POST", "/v1/jobs/1/pause"), request("POST", "/v1/jobs/1/resume"), request("GET", "/v1/jobs/1/log"),
         request("POST", "/v1/workers", HELLO), request("POST", ME + "/take", {"wait": 0}), request("POST", ME + "/heartbeat", {"leases": [lease]}),
         request("POST", ME + "/drain"), request("GET", "/v1/workers", headers=["Cookie: a=b; token=" + TOKEN, "Accept: text/html", "If-None-Match: \"x\""]),
         request("PUT", "/v1/leases/%d/strip?sha256=%s&seconds=1.5" % (lease, SHA), SCENE), request("POST", "/v1/leases/%d/return" % lease),
         request("POST", "/v1/leases/%d/failure" % lease, {"line": "Parse Error: ...", "log": "x\n"}), request("GET", "/", headers=["Range: bytes=0-10"]),
-        request("POST", "/v1/jobs", job, ["Transfer-Encoding: chunked"]), request("PUT", "/v1/files/" + SHA, SCENE, ["Expect: 100-continue"])]
+        request("POST", "/v1/jobs", dict(JOB, film_rate=25), ["Transfer-Encoding: chunked"]), request("PUT", "/v1/files/" + SHA, SCENE, ["Expect: 100-continue"])]
 MARKS = [b"\r\n", b"\0", b"%", b"%00", b"../", b"\"", b"{", b"[" * 200, b"\xff\xfe", b"-1", b"0", b"99999999999999999999", b"1e999", b"null", b": ", b" ", b"?", b"&", b"=",
          b"Content-Length: 5\r\n", b"Transfer-Encoding: chunked\r\n", b"x" * 20000]
 
@@ -103,10 +94,10 @@ while time.monotonic() < end:
     assert server.process.poll() is None, ("the server died of", data, open(server.log).read()[-2000:])
 for good in GOOD[:5]:
     assert answered(good)[9:12] in (b"200", b"201"), good
-told = server.ask("/v1/jobs/1", token=TOKEN)
+told = ask("/v1/jobs/1")
 assert told[0] == 200 and told[1]["spec"]["name"] == "x", told
 server.process.kill()
 server.process.wait()
 server.again() # whatever was written can be read
-assert server.ask("/v1/jobs/1", token=TOKEN)[1]["spec"]["name"] == "x"
+assert ask("/v1/jobs/1")[1]["spec"]["name"] == "x"
 print("%d damaged requests: %s" % (sent, ", ".join("%s %d" % c for c in sorted(codes.items()))))

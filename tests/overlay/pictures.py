@@ -31,6 +31,9 @@ class Picture:
 		return [tuple(1.0 if i < 0 else p[i] * scale for i in order) for p in self.pixels]
 
 
+PNG_CHANNELS = {0: "Y", 2: "RGB", 4: "YA", 6: "RGBA"}
+
+
 def tuples(flat, n):
 	return zip(*[iter(flat)] * n)
 
@@ -39,7 +42,8 @@ def words(data, order):
 	return struct.unpack(f"{order}{len(data) // 2}H", data)
 
 
-def png(data):
+def unpacked_png(data):
+	"""(width, height, bits, colour type), the other chunks by their names, and the bytes of the rows (ISO/IEC 15948)."""
 	assert data[:8] == b"\x89PNG\r\n\x1a\n"
 	at, chunks, packed = 8, {}, b""
 	while at < len(data):
@@ -51,20 +55,26 @@ def png(data):
 		else:
 			chunks[kind.decode()] = body
 		at += 12 + size
-	width, height, bits, colour = struct.unpack(">IIBB", chunks.pop("IHDR")[:10])
-	names = {0: "Y", 2: "RGB", 4: "YA", 6: "RGBA"}[colour]
-	step = len(names) * bits // 8
+	width, height, bits, colour = head = struct.unpack(">IIBB", chunks.pop("IHDR")[:10])
+	step = len(PNG_CHANNELS[colour]) * bits // 8
 	stride = width * step
-	raw, above, out = zlib.decompress(packed), bytes(stride), b""
+	raw, above, out = zlib.decompress(packed), bytes(stride), []
 	for row in range(height):
 		line = bytearray(raw[row * (stride + 1) + 1:(row + 1) * (stride + 1)])
 		method = raw[row * (stride + 1)]
 		for i in range(stride):
 			a, b, c = (line[i - step] if i >= step else 0), above[i], (above[i - step] if i >= step else 0)
-			near = min((abs(b - c), 0, a), (abs(a - c), 1, b), (abs(a + b - 2 * c), 2, c))[2]
+			to_a, to_b, to_c = abs(b - c), abs(a - c), abs(a + b - 2 * c)
+			near = a if to_a <= to_b and to_a <= to_c else b if to_b <= to_c else c
 			line[i] = (line[i] + (0, a, b, (a + b) // 2, near)[method]) & 255
-		out += line
+		out.append(line)
 		above = line
+	return head, chunks, b"".join(out)
+
+
+def png(data):
+	(width, height, bits, colour), chunks, out = unpacked_png(data)
+	names = PNG_CHANNELS[colour]
 	flat = out if bits == 8 else words(out, ">")
 	notes = {k: v for k, v in chunks.items() if k not in ("tIME", "tEXt", "IEND")}
 	return Picture(width, height, names, 2**bits - 1, tuples(flat, len(names)), **notes)
