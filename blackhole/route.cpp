@@ -47,7 +47,11 @@ bool Route::solve(const Vec3& x, const Vec3& d, const Atlas& atlas, bool ramp) {
 	const double b = r * twist * speed;
 	if (!atlas.find(b, orbit_) || (orbit_.turns() && r <= photon_sphere))
 		return false;
-	tolerance_ = atlas.settings().tolerance;
+	if (tolerance_ != atlas.settings().tolerance) {
+		tolerance_ = atlas.settings().tolerance;
+		// Of more chords an arc would be a poor triangle.
+		most_in_arc_ = std::max(1, static_cast<int>(0.3 / std::sqrt(tolerance_)));
+	}
 	per_size_ = 1 / std::max(b, 1.0);
 	start_ = x;
 	const double u = 1 / r, w = -s * speed / std::max(b, 1.0), edge = 1 / atlas.settings().effect_radius;
@@ -177,8 +181,7 @@ bool Route::next(Arc& arc, int chords) {
 	if (at_ >= corners_)
 		return false;
 	arc.from = point_;
-	// Of more chords an arc would be a poor triangle.
-	arc.chords = std::min({chords, std::max(1, static_cast<int>(0.3 / std::sqrt(tolerance_))), corners_ - at_});
+	arc.chords = std::min({chords, most_in_arc_, corners_ - at_});
 	const State from = state_;
 	const double r = r_;
 	at_ += arc.chords;

@@ -52,6 +52,7 @@ private:
 	Charted orbit_;
 	Vec3 start_, f1_, f2_; // axes of the orbit's plane, the angle counted from f1
 	double tolerance_ = 0, swept_ = 0, per_size_ = 1;
+	int most_in_arc_ = 1;
 	bool escapes_ = true;
 	State begin_{}, end_{};
 	State ramp_[ramp_count];

@@ -203,11 +203,9 @@ void Chord_Tree::Find(const Scene_Chord& c, const Radii_List& radii, Object_List
 			in = Greater((node.side[sign[i]][i] - near_side[i]) * per[i], in);
 			beyond = Lesser((node.side[1 - sign[i]][i] - far_side[i]) * per[i], beyond);
 		}
-		for(int meets = No_Greater(in, beyond), k = 0; meets != 0; meets >>= 1, k++)
+		for(int meets = No_Greater(in, beyond); meets != 0; meets &= meets - 1)
 		{
-			const int child = node.child[k];
-			if(!(meets & 1))
-				continue;
+			const int child = node.child[__builtin_ctz(meets)];
 			if(child > 0)
 				stack[depth++] = child;
 			else if((child < 0) && In_Shell(c, radii[~child]))
