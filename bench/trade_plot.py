@@ -115,12 +115,16 @@ class Panel:
 		self.text(x - 14, y + 22, "the default", anchor="end", weight=600, fill="#24292f")
 
 
-def spread(labels, apart=15):
-	"""Moves labels (y, ...) down so that they do not overlap."""
-	last = -math.inf
-	for label in sorted(labels):
+def spread(labels, apart=15, lowest=math.inf):
+	"""Moves labels (y, ...) down so that they do not overlap, and up where they would be below the lowest."""
+	labels, places, last = sorted(labels), [], -math.inf
+	for label in labels:
 		last = max(label[0], last + apart)
-		yield (last,) + label[1:]
+		places.append(last)
+	for i in reversed(range(len(places))):
+		places[i] = min(places[i], lowest)
+		lowest = places[i] - apart
+	return [(y,) + label[1:] for y, label in zip(places, labels)]
 
 
 def draw(trade):
@@ -130,7 +134,7 @@ def draw(trade):
 	error = "error of 99.9 % of the pixels is less, pixels of 1920 x 1080"
 	p = Panel(out, (70, 70, 650, 400), (0.2, 200), (4e-3, 2e3), "Time against error: seven scenes, the worst of them", "CPU microseconds a ray", error)
 	p.line([(p.px(us), p.py(px)) for (us, px), _ in trade.front()], "#fff1c2", 16)
-	p.text(p.px(0.22), p.py(5.5), "broad: the front", fill="#9a7b1f")
+	p.text(p.px(0.36), p.py(200), "broad: the front", fill="#9a7b1f")
 	p.goal()
 	labels = []
 	steps = sorted({s[1:] for s in trade.at if s[0] == "euler-r" and s[2] == 1e4}, reverse=True)
@@ -164,7 +168,7 @@ def draw(trade):
 			places = [(q.px(a), q.py(b)) for a, b in curve]
 			q.line(places, colour, 1.8, "4 3" if scene in MIRRORS else "")
 			labels.append((places[-1][1] + 4, scene + (", 99 %" if scene in MIRRORS else ""), colour))
-		for y, scene, colour in spread(labels, 13):
+		for y, scene, colour in spread(labels, 13, box[1] + box[3] + 4):
 			q.text(box[0] + box[2] + 6, y, scene, fill=colour)
 		q.line([(q.px(x), box[1]), (q.px(x), box[1] + box[3])], "#24292f", 1)
 		q.text(q.px(x) + 4, box[1] + 14, "default", fill="#24292f")
