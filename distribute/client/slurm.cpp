@@ -152,7 +152,7 @@ int slurm_command(const Words& words) {
 	}
 	Client(access).get("/v1/workers"); // whether the token is good
 	const ScratchFolder scratch(fs::temp_directory_path());
-	write_durably(scratch.path() / "workers.sh", script);
+	write_scratch(scratch.path() / "workers.sh", script);
 	std::vector<std::string> sbatch = {"sbatch", "--parsable"};
 	sbatch.insert(sbatch.end(), end == words.end() ? end : end + 1, words.end());
 	sbatch.push_back((scratch.path() / "workers.sh").string());

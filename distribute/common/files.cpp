@@ -55,6 +55,13 @@ int write_file(const fs::path& file, std::string_view data) {
 	return write_and([](int) { return 0; }, file, data);
 }
 
+void write_scratch(const fs::path& file, std::string_view data) {
+	if (const int error = write_file(file, data)) {
+		errno = error;
+		throw system_error("cannot write " + file.string());
+	}
+}
+
 void write_durably(const fs::path& file, std::string_view data) {
 	const fs::path part = file.string() + ".part" + std::to_string(::getpid());
 	if (const int error = write_and(::fsync, part, data); error || ::rename(part.c_str(), file.c_str()) != 0) {

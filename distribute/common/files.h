@@ -16,6 +16,8 @@ namespace fs = std::filesystem;
 void write_durably(const fs::path& file, std::string_view data);
 /// Writes it without more ado; 0, or errno.
 int write_file(const fs::path& file, std::string_view data);
+/// Likewise of what is only read by the next program and then removed; throws Error.
+void write_scratch(const fs::path& file, std::string_view data);
 /// Moves a file that is already written to its place, as durably.
 void move_durably(const fs::path& from, const fs::path& to);
 /// The whole content; throws Error.

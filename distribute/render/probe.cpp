@@ -29,8 +29,8 @@ std::string probe(const std::filesystem::path& povray, const Sandbox& sandbox) {
 	task.spec.width = 40;
 	task.spec.height = task.spec.strip_rows = task.rows = 30;
 	task.spec.bits = 16;
-	write_durably(scratch.path() / "probe.pov", scene);
-	write_durably(scratch.path() / "probe.ini", strip_ini(task, scratch.path() / "probe.png"));
+	write_scratch(scratch.path() / "probe.pov", scene);
+	write_scratch(scratch.path() / "probe.ini", strip_ini(task, scratch.path() / "probe.png"));
 	Command command = povray_command(povray, scratch.path() / "probe.ini", scratch.path());
 	command.folder = scratch.path();
 	command.log = scratch.path() / "log";

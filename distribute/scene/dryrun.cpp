@@ -52,7 +52,7 @@ Command scene_command(const SettledScene& scene, std::string ini, const Trier& t
 	const std::vector<fs::path> folders = folders_of(scene);
 	for (size_t i = 0; i < folders.size(); ++i)
 		ini += scene_in(plain_name(folders[i], scratch, i));
-	write_durably(scratch / "dry.ini", ini + "Output_To_File=Off\n");
+	write_scratch(scratch / "dry.ini", ini + "Output_To_File=Off\n");
 	const fs::path here = scratch / "here";
 	fs::create_directory(here);
 	Command command = povray_command(trier.povray, scratch / "dry.ini", here);

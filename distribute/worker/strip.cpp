@@ -50,7 +50,7 @@ Rendered render_strip(const Renderer& renderer, const Task& task, const fs::path
 	if (share)
 		lines += "Radiosity_File_Name=\"" + ((known ? scratch : out) / "light").string() + "\"\n" +
 				 (known ? "Radiosity_From_File=On\n" : "Radiosity_To_File=On\n");
-	write_durably(ini, lines);
+	write_scratch(ini, lines);
 	Command command = povray_command(renderer.povray, ini, here);
 	command.folder = here;
 	command.log = log;
