@@ -23,6 +23,7 @@ struct Settings {
 	double strip_seconds = 10; ///< what a strip takes, a tenth more or less
 	double seconds = 60;       ///< how long all of it goes on
 	double ramp = 5;           ///< the workers come within so many seconds
+	bool lean = false;         ///< a worker keeps one connection open, not three
 	std::string strip;         ///< the picture that each sends
 	std::string strip_hash;
 	long job = 0;
@@ -49,6 +50,7 @@ public:
 	Line(asio::io_context& context, const Settings& settings) : socket(context), set(settings) {}
 	/// The status, 0 if the connection broke; the answer's body is in `answer`.
 	Awaitable<int> ask(const char* method, std::string path, std::string_view body);
+	void close();
 	std::string answer;
 
 private:

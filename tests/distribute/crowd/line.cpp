@@ -65,11 +65,15 @@ Awaitable<int> Line::ask(const char* method, std::string path, std::string_view 
 		const bool fresh = !socket.is_open();
 		if (const int status = co_await once(method, path, body); status)
 			co_return status;
-		Code ignored;
-		socket.close(ignored);
+		close();
 		if (fresh || tries == 1)
 			co_return 0;
 	}
+}
+
+void Line::close() {
+	Code ignored;
+	socket.close(ignored);
 }
 
 long number_in(const std::string& text, const std::string& key) {

@@ -24,6 +24,8 @@ const std::vector<farm::Option> options = {
 	{"--strip-ms", "MS", "what a strip takes, a tenth more or less", "10000"},
 	{"--seconds", "S", "how long it goes on", "60"},
 	{"--ramp", "S", "the workers come within so many seconds", "5"},
+	{"--lean", "",
+		"a worker keeps one connection, not three: heartbeats go where strips are asked for, and the one for sending closes", ""},
 	{"--width", "PIXELS", "of a strip", "1280"},
 	{"--rows", "ROWS", "of a strip", "128"},
 	{"--status-ms", "MS", "how often the job's status is asked for", "500"},
@@ -46,7 +48,11 @@ public:
 		const std::string path = "/v1/workers/" + self->id + "/take", wait = R"({"wait":30})";
 		for (bool first = true; Clock::now() < until;) {
 			const auto asked = Clock::now();
+			while (self->beating) // on the same connection
+				co_await sleep(timer, 0.001);
+			self->polling = true;
 			const int status = co_await self->taking.ask("POST", path, wait);
+			self->polling = false;
 			if (Clock::now() >= until)
 				break;
 			if (!first)
@@ -103,7 +109,7 @@ private:
 		Line taking, delivering, touching;
 		std::string id;
 		long lease = 0;
-		bool sending = false;
+		bool sending = false, polling = false, beating = false;
 	};
 
 	static Clock::duration span(double seconds) {
@@ -126,6 +132,8 @@ private:
 			figures.uploads.add(start);
 			figures.accepted += self->delivering.answer.find("true") != std::string::npos;
 		}
+		if (set.lean)
+			self->delivering.close();
 		self->sending = false;
 	}
 	Awaitable<void> beat(std::shared_ptr<Self> self) {
@@ -134,9 +142,14 @@ private:
 		while (Clock::now() < until) {
 			co_await sleep(timer, 5); // a quarter of the server's lease
 			const std::string body = "{\"leases\":[" + (self->lease ? std::to_string(self->lease) : "") + "]}";
+			if (set.lean && self->polling) // who asks is heard
+				continue;
+			Line& line = set.lean ? self->taking : self->touching;
 			const auto start = Clock::now();
-			if (good(co_await self->touching.ask("POST", path, body) == 200, self->touching))
+			self->beating = set.lean;
+			if (good(co_await line.ask("POST", path, body) == 200, line))
 				figures.beats.add(start);
+			self->beating = false;
 		}
 	}
 
@@ -165,6 +178,7 @@ int run(const farm::Arguments& a) {
 	set.workers = static_cast<int>(a.number("--workers", 1, 100000));
 	set.strip_seconds = 0.001 * static_cast<double>(a.number("--strip-ms", 1, 1000000));
 	set.seconds = static_cast<double>(a.number("--seconds", 1, 100000));
+	set.lean = a.has("--lean");
 	set.ramp = static_cast<double>(a.number("--ramp", 0, 100000));
 	const int width = static_cast<int>(a.number("--width", 1, 10000)), rows = static_cast<int>(a.number("--rows", 1, 10000));
 	set.strip = make_strip(width, rows);
