@@ -4,6 +4,7 @@
 #include "distribute/common/error.h"
 #include "distribute/common/files.h"
 #include "distribute/render/povray.h"
+#include "distribute/scene/cuts.h"
 
 #include <nlohmann/json.hpp>
 
@@ -26,38 +27,6 @@ const std::vector<Option> scene_options = {
 
 namespace {
 
-/// povray traces whole blocks of so many rows; cuts elsewhere would trace some twice.
-constexpr int block = 32;
-
-/// Half a minute at most, that there is something to see and little to lose.
-constexpr double longest = 30;
-
-/// Seconds for a job of equal strips, when frames are cut to so many. Beside its pixels each strip costs povray's start, the way
-/// to the server and a parse; radiosity's pretrace is done anew on each machine. What is not a whole frame is written and read as
-/// one, and packed a second time. At the job's end slots wait for the last strips, half of one each, but for the one that renders
-/// it.
-double job_seconds(const JobSpec& spec, const Gathered& files, int slots, int count) {
-	constexpr double start = 0.07, million_pixels = 0.13; // as measured, with a film of 1280 x 720
-	const double cut = count > 1 ? million_pixels * 1e-6 * spec.width * spec.height : 0;
-	const double strip = files.frame_seconds / count + start + cut + files.parse_seconds + files.light_seconds;
-	return strip * count * spec.frames() / slots + 0.5 * (1 - 1.0 / slots) * strip;
-}
-
-/// The count of strips a frame for which a job is done first; never so many that parsing is above a twentieth of a strip's time.
-int best_count(const JobSpec& spec, const Gathered& files, int slots, int blocks) {
-	const double least = 20 * files.parse_seconds, most = std::max({longest, 20 * files.light_seconds, 2 * least});
-	int best = 0;
-	for (int count = 1; count <= blocks; ++count) {
-		const double strip = files.frame_seconds / count;
-		if (count > 1 && strip < least)
-			break;
-		const bool too_long = strip > most && count < blocks;
-		if (!too_long && (best == 0 || job_seconds(spec, files, slots, count) < job_seconds(spec, files, slots, best)))
-			best = count;
-	}
-	return std::max(1, best);
-}
-
 /// --strips: 0 is auto.
 int asked_strips(const Arguments& arguments, const JobSpec& spec) {
 	const std::string& strips = arguments.get("--strips");
@@ -65,17 +34,6 @@ int asked_strips(const Arguments& arguments, const JobSpec& spec) {
 	if (count > spec.height)
 		throw Error("--strips is " + strips + ", and a frame has " + std::to_string(spec.height) + " rows");
 	return count;
-}
-
-int strip_rows(const JobSpec& spec, const Gathered& files, int count, int slots) {
-	if (!spec.whole_because.empty() || count == 1)
-		return spec.height;
-	const int blocks = (spec.height + block - 1) / block;
-	if (count > blocks) // as asked for, at some cost
-		return (spec.height + count - 1) / count;
-	if (count == 0)
-		count = best_count(spec, files, slots, blocks);
-	return std::min(spec.height, (blocks + count - 1) / count * block);
 }
 
 } // namespace
