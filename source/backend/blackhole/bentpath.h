@@ -72,7 +72,7 @@ class Bent_Path
 		template<typename Walk> bool Along(Walk& walk, size_t hole, bool emerges, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
 		template<typename Walk> bool Along_Chords(Walk& walk, size_t hole, bool emerges, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
 		template<typename Walk> bool Along_Arcs(Walk& walk, size_t hole, int chords, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
-		void Skip(const blackhole::Arc& arc, const Blackhole& hole);
+		void Skip(int chords, DBL length);
 		template<typename Walk> bool Along_Chord(const Walk& walk, const blackhole::Chord& marks, const Scene_Chord& chord, const std::vector<unsigned int>& objects, size_t hole, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post, bool& found);
 		bool Hit_Chord(const Scene_Chord& chord, const blackhole::Vec3& direction, DBL length, const std::vector<unsigned int>& objects, const Blackhole& hole, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
 		void Pass(const VECTOR from, const blackhole::Vec3& direction, DBL length);

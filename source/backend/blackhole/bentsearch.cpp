@@ -135,7 +135,6 @@ bool Bent_Path::Along_Chord(const Walk& walk, const blackhole::Chord& marks, con
 	Vec3 along = Vec3_Of(chord.to) - Vec3_Of(chord.from);
 	const DBL chord_length = length(along), remains = s.budget - s.travelled;
 	found = false;
-	counts.Chords++;
 	s.chords++;
 	(objects.empty() ? counts.Skipped : counts.Tested)++;
 	if(!objects.empty())
@@ -221,7 +220,7 @@ bool Bent_Path::Along_Arcs(Walk& walk, size_t index, int chords, Intersection& i
 		tree.Find(chord, radii, bent->candidates);
 		if(bent->candidates.empty())
 		{
-			Skip(arc, hole);
+			Skip(arc.chords, arc.length * hole.Radius);
 			continue;
 		}
 		walk.go_to(here);
@@ -234,7 +233,7 @@ bool Bent_Path::Along_Arcs(Walk& walk, size_t index, int chords, Intersection& i
 			tree.Choose(chord, radii, bent->candidates, bent->fewer);
 			if(bent->fewer.empty())
 			{
-				Skip(part, hole);
+				Skip(part.chords, part.length * hole.Radius);
 				continue;
 			}
 			walk.go_to(there);
@@ -242,20 +241,21 @@ bool Bent_Path::Along_Arcs(Walk& walk, size_t index, int chords, Intersection& i
 			{
 				In_Scene(c, 0.0, hole, chord);
 				tree.Choose(chord, radii, bent->fewer, bent->chosen);
-				if(Along_Chord(walk, c, chord, bent->chosen, index, isect, pre, post, found))
+				if(bent->chosen.empty())
+					Skip(1, length(c.to - c.from) * hole.Radius);
+				else if(Along_Chord(walk, c, chord, bent->chosen, index, isect, pre, post, found))
 					return found;
 			}
 		}
 	}
 }
 
-// Nothing is near these chords.
-void Bent_Path::Skip(const blackhole::Arc& arc, const Blackhole& hole)
+// Nothing is near these chords, of a length in the scene.
+void Bent_Path::Skip(int chords, DBL length)
 {
-	bent->counts.Chords += arc.chords;
-	bent->counts.Skipped += arc.chords;
-	state->chords += arc.chords;
-	state->travelled += arc.length * hole.Radius;
+	bent->counts.Skipped += chords;
+	state->chords += chords;
+	state->travelled += length;
 	state->moved = true;
 }
 

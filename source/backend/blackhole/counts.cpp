@@ -18,7 +18,7 @@ namespace pov
 
 static POV_ULONG Blackhole_Counts::* const SUMS[] = {
 	&Blackhole_Counts::Entered, &Blackhole_Counts::Captured, &Blackhole_Counts::Closed, &Blackhole_Counts::Charted, &Blackhole_Counts::Paths,
-	&Blackhole_Counts::Steps, &Blackhole_Counts::Filled, &Blackhole_Counts::Chords, &Blackhole_Counts::Tested,
+	&Blackhole_Counts::Steps, &Blackhole_Counts::Filled, &Blackhole_Counts::Tested,
 	&Blackhole_Counts::Skipped, &Blackhole_Counts::Object_Tests, &Blackhole_Counts::Hits, &Blackhole_Counts::Nudged,
 	&Blackhole_Counts::Failed, &Blackhole_Counts::Exhausted, &Blackhole_Counts::Drifted, &Blackhole_Counts::Trapped,
 	&Blackhole_Counts::Origins_Inside, &Blackhole_Counts::Undirected };
@@ -101,7 +101,7 @@ static std::string Of_Shells(const std::vector<POV_ULONG>& tested, const Shells&
 
 std::string Blackhole_Counts::Text(const std::vector<Blackhole *>& holes, const std::vector<Shells>& shells) const
 {
-	const double entered = max(1.0, double(Entered)), paths = max(1.0, double(Paths));
+	const double entered = max(1.0, double(Entered)), paths = max(1.0, double(Paths)), chords = double(Tested) + double(Skipped);
 	char text[1024];
 	snprintf(text, sizeof text,
 	         "Bent Rays:          %15.0f   Captured:        %15.0f\n"
@@ -114,7 +114,7 @@ std::string Blackhole_Counts::Text(const std::vector<Blackhole *>& holes, const 
 	         "Most Turns:         %15.2f   Largest Drift:   %15.2g\n",
 	         double(Entered), double(Captured), double(Closed), double(Charted),
 	         double(Paths), double(Steps), double(Steps) / paths, Most_Steps,
-	         double(Chords), double(Chords) / entered, Most_Chords,
+	         chords, chords / entered, Most_Chords,
 	         double(Tested), double(Skipped), double(Object_Tests), double(Hits), Most_Swept / (2.0 * M_PI), Drift);
 	std::string lines(text);
 	for(size_t h = 0; h < By_Shell.size(); h++)

@@ -22,7 +22,7 @@ struct Blackhole_Counts
 	POV_ULONG Closed, Charted, Paths; ///< passages by the closed form alone, along a charted orbit, and those whose path was followed
 	POV_ULONG Steps;               ///< nodes of all paths, but the first of each
 	POV_ULONG Filled;              ///< passages with fog, rainbow or media along them
-	POV_ULONG Chords, Tested, Skipped;
+	POV_ULONG Tested, Skipped;     ///< chords
 	POV_ULONG Object_Tests, Hits;  ///< of single objects on single chords
 	POV_ULONG Nudged;
 	// What went wrong.
