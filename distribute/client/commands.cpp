@@ -17,19 +17,20 @@
 
 namespace farm {
 
-const std::vector<Option> server_options = {
-	{"--server", "URL", "also from BHFARM_SERVER; default http://127.0.0.1:7700", ""},
-	{"--token-file", "FILE", "the token in it opens; also from BHFARM_TOKEN_FILE", ""},
-	{"--ca", "FILE", "the certificate authority to trust, PEM; also from BHFARM_CA", ""},
-	{"--help", "", "this", ""},
-};
-
 namespace {
 
 const Option json_option{"--json", "", "for machines", ""};
 const std::atomic<bool> never = false;
 
-Client connect(const Arguments& a) { return Client(access_from(a.get("--server"), a.get("--token-file"), a.get("--ca"))); }
+/// The words of a command that asks a server, after its help if that is wanted.
+Arguments asked(const Words& words, const std::string& usage, const std::vector<Option>& own = {}) {
+	const auto options = own + std::vector<Option>{json_option} + access_options;
+	Arguments a(words, options);
+	help_if_asked(a, usage, options);
+	return a;
+}
+
+Client connect(const Arguments& a) { return Client(access_from(a)); }
 
 std::int64_t job_number(const Arguments& a) {
 	if (a.rest.size() != 1)
@@ -69,22 +70,9 @@ int outcome(const json& job) {
 
 } // namespace
 
-std::vector<Option> operator+(std::vector<Option> a, const std::vector<Option>& b) {
-	a.insert(a.end(), b.begin(), b.end());
-	return a;
-}
-
-void help_if_asked(const Arguments& arguments, const std::string& usage, const std::vector<Option>& options) {
-	if (!arguments.has("--help"))
-		return;
-	std::printf("%s\n%s", usage.c_str(), help_lines(options).c_str());
-	throw HelpGiven();
-}
-
 int submit_command(const Words& words) {
-	const auto options = scene_options + std::vector<Option>{json_option} + server_options;
-	const Arguments a(words, options);
-	help_if_asked(a, "bhfarm submit SCENE.ini|SCENE.pov [options] [POV-Ray's own words]\nPrints the job's number.", options);
+	const Arguments a = asked(
+		words, "bhfarm submit SCENE.ini|SCENE.pov [options] [POV-Ray's own words]\nPrints the job's number.", scene_options);
 	Client client = connect(a);
 	const json workers = client.get("/v1/workers");
 	int slots = 0;
@@ -104,9 +92,7 @@ int submit_command(const Words& words) {
 }
 
 int status_command(const Words& words) {
-	const auto options = std::vector<Option>{json_option} + server_options;
-	const Arguments a(words, options);
-	help_if_asked(a, "bhfarm status [JOB]", options);
+	const Arguments a = asked(words, "bhfarm status [JOB]");
 	Client client = connect(a);
 	const json answer = a.rest.empty() ? client.get("/v1/jobs") : json{{"jobs", {client.get(path_of(job_number(a)))}}};
 	if (a.has("--json")) {
@@ -128,9 +114,8 @@ int status_command(const Words& words) {
 }
 
 int watch_command(const Words& words) {
-	const auto options = std::vector<Option>{json_option} + server_options;
-	const Arguments a(words, options);
-	help_if_asked(a, "bhfarm watch JOB\nUntil it is done; exit code 0 if it is, 1 if it failed or was cancelled.", options);
+	const Arguments a =
+		asked(words, "bhfarm watch JOB\nUntil it is done; exit code 0 if it is, 1 if it failed or was cancelled.");
 	Client client = connect(a);
 	const json job = follow(client, job_number(a), 600, never);
 	if (a.has("--json"))
@@ -139,9 +124,7 @@ int watch_command(const Words& words) {
 }
 
 int workers_command(const Words& words) {
-	const auto options = std::vector<Option>{json_option} + server_options;
-	const Arguments a(words, options);
-	help_if_asked(a, "bhfarm workers", options);
+	const Arguments a = asked(words, "bhfarm workers");
 	if (!a.rest.empty())
 		throw Error("what is '" + a.rest[0] + "'? 'bhfarm workers' lists all");
 	const json answer = connect(a).get("/v1/workers");
@@ -163,9 +146,7 @@ int workers_command(const Words& words) {
 }
 
 int log_command(const Words& words) {
-	const auto options = std::vector<Option>{json_option} + server_options;
-	const Arguments a(words, options);
-	help_if_asked(a, "bhfarm log JOB\nWhat failed, where, and what POV-Ray said.", options);
+	const Arguments a = asked(words, "bhfarm log JOB\nWhat failed, where, and what POV-Ray said.");
 	const json answer = connect(a).get(path_of(job_number(a), "/log"));
 	if (a.has("--json")) {
 		std::puts(answer["failures"].dump().c_str());
@@ -179,11 +160,9 @@ int log_command(const Words& words) {
 }
 
 int fetch_command(const Words& words) {
-	const auto options = std::vector<Option>{{"--to", "DIR", "where to put them", "."}, json_option} + server_options;
-	const Arguments a(words, options);
-	help_if_asked(a,
+	const Arguments a = asked(words,
 		"bhfarm fetch JOB\nThe frames that are finished, and the film. Those that are there already are not fetched again.",
-		options);
+		{{"--to", "DIR", "where to put them", "."}});
 	Client client = connect(a);
 	const std::int64_t id = job_number(a);
 	const json job = client.get(path_of(id)), done = client.get(path_of(id, "/pictures"));
@@ -211,9 +190,7 @@ int fetch_command(const Words& words) {
 }
 
 int change_command(const std::string& what, const Words& words) {
-	const auto options = std::vector<Option>{json_option} + server_options;
-	const Arguments a(words, options);
-	help_if_asked(a, "bhfarm " + what + " JOB", options);
+	const Arguments a = asked(words, "bhfarm " + what + " JOB");
 	Client client = connect(a);
 	client.post(path_of(job_number(a), "/" + what), json::object());
 	if (a.has("--json"))
@@ -222,9 +199,7 @@ int change_command(const std::string& what, const Words& words) {
 }
 
 int remove_command(const Words& words) {
-	const auto options = std::vector<Option>{json_option} + server_options;
-	const Arguments a(words, options);
-	help_if_asked(a, "bhfarm remove JOB\nThe job, its frames, and all the server knows of it.", options);
+	const Arguments a = asked(words, "bhfarm remove JOB\nThe job, its frames, and all the server knows of it.");
 	connect(a).remove(path_of(job_number(a)));
 	if (a.has("--json"))
 		std::puts(json{{"removed", job_number(a)}}.dump().c_str());
@@ -232,9 +207,8 @@ int remove_command(const Words& words) {
 }
 
 int drain_command(const Words& words) {
-	const auto options = std::vector<Option>{json_option} + server_options;
-	const Arguments a(words, options);
-	help_if_asked(a, "bhfarm drain WORKER\nThe worker finishes what it has and leaves. 'bhfarm workers' lists them.", options);
+	const Arguments a =
+		asked(words, "bhfarm drain WORKER\nThe worker finishes what it has and leaves. 'bhfarm workers' lists them.");
 	if (a.rest.size() != 1)
 		throw Error("which worker? 'bhfarm workers' lists them");
 	Client client = connect(a);
@@ -252,9 +226,8 @@ int drain_command(const Words& words) {
 }
 
 int token_command(const Words& words) {
-	const std::vector<Option> options = {{"--help", "", "this", ""}};
-	const Arguments a(words, options);
-	help_if_asked(a, "bhfarm token new\nPrints a new token, for the server's --token-file and the workers'.", options);
+	const Arguments a(words, {});
+	help_if_asked(a, "bhfarm token new\nPrints a new token, for the server's --token-file and the workers'.", {});
 	if (a.rest != Words{"new"})
 		throw Error("'bhfarm token new' prints a new token; put it into the server's --token-file and the workers'");
 	std::puts(random_hex(32).c_str());
@@ -262,10 +235,10 @@ int token_command(const Words& words) {
 }
 
 int source_command(const Words& words) {
-	const Arguments a(words, server_options);
+	const Arguments a(words, access_options);
 	help_if_asked(a,
 		"bhfarm source >FILE.tar.gz\nThe source of what runs here; with --server or BHFARM_SERVER, of what runs there.",
-		server_options);
+		access_options);
 	if (!a.rest.empty())
 		throw Error("what is '" + a.rest[0] + "'? The source goes to stdout");
 	if (::isatty(1))
@@ -277,9 +250,7 @@ int source_command(const Words& words) {
 	}
 	const ScratchFolder scratch(fs::temp_directory_path());
 	connect(a).download("/source", scratch.path() / "source");
-	const std::string source = read_file(scratch.path() / "source");
-	if (std::fwrite(source.data(), 1, source.size(), stdout) != source.size() || std::fflush(stdout) != 0)
-		throw system_error("cannot write the source");
+	write_out(read_file(scratch.path() / "source"), "the source");
 	return 0;
 }
 

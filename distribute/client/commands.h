@@ -27,12 +27,5 @@ int source_command(const Words& words);
 /// cancel, pause, resume, retry.
 int change_command(const std::string& what, const Words& words);
 
-/// --server, --token-file, --ca.
-extern const std::vector<Option> server_options;
-std::vector<Option> operator+(std::vector<Option> a, const std::vector<Option>& b);
-/// Prints help and throws this, for main to end well.
-struct HelpGiven {};
-void help_if_asked(const Arguments& arguments, const std::string& usage, const std::vector<Option>& options);
-
 } // namespace farm
 #endif

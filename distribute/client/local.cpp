@@ -11,7 +11,6 @@
 #include <csignal>
 #include <cstdio>
 #include <set>
-#include <thread>
 #include <unistd.h>
 
 namespace farm {
@@ -116,15 +115,13 @@ void remove_others(Client& client, std::int64_t id) {
 } // namespace
 
 int render_command(const Words& words) {
-	const auto options = scene_options + std::vector<Option>{{"--slots", "N", "strips at a time; default one a core", ""},
-											 {"--help", "", "this", ""}};
+	const auto options = scene_options + std::vector<Option>{{"--slots", "N", "strips at a time; default one a core", ""}};
 	const Arguments a(words, options);
 	help_if_asked(a,
 		"bhfarm render SCENE.ini|SCENE.pov [options] [POV-Ray's own words]\n"
 		"Renders on this machine. After Ctrl-C the same command goes on where it was.",
 		options);
-	const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-	const int slots = a.has("--slots") ? static_cast<int>(a.number("--slots", 1, 1024)) : cores;
+	const int slots = slots_from(a);
 	Prepared prepared = prepare(a);
 	JobSpec& spec = prepared.scene.spec;
 	const fs::path output =

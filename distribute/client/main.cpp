@@ -49,12 +49,5 @@ int main(int argc, char** argv) {
 		std::fputs(usage, words.empty() ? stderr : stdout);
 		return words.empty() ? 2 : 0;
 	}
-	try {
-		return dispatch(words[0], {words.begin() + 1, words.end()});
-	} catch (const farm::HelpGiven&) {
-		return 0;
-	} catch (const std::exception& e) {
-		farm::say(e.what());
-		return 1;
-	}
+	return farm::run_program("bhfarm", false, [&] { return dispatch(words[0], {words.begin() + 1, words.end()}); });
 }

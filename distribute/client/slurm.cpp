@@ -11,9 +11,7 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <sstream>
-#include <unistd.h>
 
 namespace farm {
 namespace {
@@ -49,12 +47,6 @@ std::pair<int, std::string> ask_slurm(std::vector<std::string> words) {
 	return {code, fs::exists(command.log) ? read_file(command.log) : ""};
 }
 
-std::string own_name() {
-	char name[256] = "";
-	::gethostname(name, sizeof name - 1);
-	return std::string(name).substr(0, std::string(name).find('.'));
-}
-
 /// Loopback is somebody else on each host.
 void check_reachable(const std::string& url, const std::string& partition) {
 	// A server that listens everywhere says 0.0.0.0, which leads nowhere else.
@@ -68,9 +60,10 @@ void check_reachable(const std::string& url, const std::string& partition) {
 	if (code != 0)
 		throw Error(
 			"the server is at " + url + ", which is this machine alone; name one that Slurm's nodes can reach by --server");
+	const auto without_domain = [](const std::string& name) { return name.substr(0, name.find('.')); };
 	std::istringstream nodes(said);
 	for (std::string node; nodes >> node;)
-		if (node.substr(0, node.find('.')) != own_name())
+		if (without_domain(node) != without_domain(host_name()))
 			throw Error("Slurm's node " + node + " cannot reach the server at " + url +
 						", which is this machine alone; start it with --listen ADDRESS:PORT, and say --server");
 }
@@ -131,7 +124,7 @@ std::string complaint(const std::string& said) {
 } // namespace
 
 int slurm_command(const Words& words) {
-	const auto options = slurm_options + limit_options + server_options;
+	const auto options = slurm_options + limit_options + access_options;
 	const auto end = std::find(words.begin(), words.end(), "--");
 	const Arguments a({words.begin(), end}, options);
 	help_if_asked(a,
@@ -141,10 +134,8 @@ int slurm_command(const Words& words) {
 		options);
 	if (!a.rest.empty())
 		throw Error("what is '" + a.rest[0] + "'? sbatch's own options stand after --");
-	const Access_to access = access_from(a.get("--server"), a.get("--token-file"), a.get("--ca"));
-	const char* variable = std::getenv("BHFARM_TOKEN_FILE");
-	const std::string token_file = a.get("--token-file").empty() && variable ? variable : a.get("--token-file");
-	const std::string script = script_for(a, access, token_file);
+	const Access_to access = access_from(a);
+	const std::string script = script_for(a, access, or_environment(a.get("--token-file"), "BHFARM_TOKEN_FILE"));
 	check_reachable(access.url, a.get("--partition"));
 	if (a.has("--dry-run")) {
 		std::fputs(script.c_str(), stdout);

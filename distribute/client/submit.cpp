@@ -22,7 +22,7 @@ const std::vector<Option> scene_options = {
 	{"--fps", "N", "the film's frames a second", "25"},
 	{"--assets", "GLOB", "further files the scene may read, relative to it; may be given again", ""},
 	{"--no-sandbox", "", "no fence around the scene, as with povray by hand", ""},
-	{"--povray", "FILE", "the povray to run; default the one beside this program", ""},
+	povray_option,
 };
 
 namespace {

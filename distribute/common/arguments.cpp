@@ -5,11 +5,18 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdio>
+#include <cstdlib>
 #include <sstream>
+#include <thread>
 
 namespace farm {
+namespace {
+const std::vector<Option> help_option = {{"--help", "", "this", ""}};
+} // namespace
 
-Arguments::Arguments(const std::vector<std::string>& words, const std::vector<Option>& options) {
+Arguments::Arguments(const std::vector<std::string>& words, const std::vector<Option>& own) {
+	const std::vector<Option> options = own + help_option;
 	for (const auto& option : options)
 		defaults[option.name] = option.otherwise;
 	for (size_t i = 0; i < words.size(); ++i) {
@@ -78,17 +85,51 @@ long whole_number(const std::string& text, const std::string& what, long least, 
 	return value;
 }
 
-std::string help_lines(const std::vector<Option>& options) {
-	std::string lines;
-	for (const auto& option : options) {
-		std::string left = "  " + option.name + (option.value.empty() ? "" : " " + option.value);
-		left.resize(std::max<size_t>(left.size() + 2, 28), ' ');
-		lines += left + option.help;
-		if (!option.otherwise.empty())
-			lines += " (default " + option.otherwise + ")";
-		lines += "\n";
+std::vector<Option> operator+(std::vector<Option> a, const std::vector<Option>& b) {
+	a.insert(a.end(), b.begin(), b.end());
+	return a;
+}
+
+void help_if_asked(const Arguments& arguments, const std::string& usage, const std::vector<Option>& options) {
+	if (!arguments.has("--help"))
+		return;
+	std::printf("%s\n", usage.c_str());
+	for (const auto& option : options + help_option) {
+		std::string line = "  " + option.name + (option.value.empty() ? "" : " " + option.value);
+		line.resize(std::max<size_t>(line.size() + 2, 28), ' ');
+		line += option.help + (option.otherwise.empty() ? "" : " (default " + option.otherwise + ")");
+		std::printf("%s\n", line.c_str());
 	}
-	return lines;
+	throw HelpGiven();
+}
+
+void no_other_words(const Arguments& arguments) {
+	if (!arguments.rest.empty())
+		throw Error("what is '" + arguments.rest[0] + "'? --help lists the options");
+}
+
+std::string or_environment(const std::string& given, const char* variable) {
+	const char* value = std::getenv(variable);
+	return given.empty() && value ? value : given;
+}
+
+int slots_from(const Arguments& arguments) {
+	if (!arguments.has("--slots"))
+		return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+	return static_cast<int>(arguments.number("--slots", 1, 1024));
+}
+
+int run_program(const std::string& name, bool daemon, const std::function<int()>& run) {
+	name_program(name, daemon);
+	try {
+		return run();
+	} catch (const HelpGiven&) {
+		return 0;
+	} catch (const std::exception& e) {
+		name_program(name, false);
+		say(e.what());
+		return 1;
+	}
 }
 
 } // namespace farm

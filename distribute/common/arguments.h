@@ -3,6 +3,7 @@
 #ifndef FARM_ARGUMENTS_H
 #define FARM_ARGUMENTS_H
 
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -20,7 +21,7 @@ struct Option {
 /// Parses a command line. Words that are no options of ours stay in order; those are somebody else's business.
 class Arguments {
 public:
-	/// Throws Error for a value that is missing or for an unknown word that starts with `--`.
+	/// Throws Error for a value that is missing or for an unknown word that starts with `--`. `--help` is always known.
 	Arguments(const std::vector<std::string>& words, const std::vector<Option>& options);
 
 	bool has(const std::string& name) const { return values.count(name) > 0; }
@@ -38,8 +39,22 @@ private:
 	std::vector<std::pair<std::string, std::string>> given;
 };
 
-/// The options as lines for --help.
-std::string help_lines(const std::vector<Option>& options);
+std::vector<Option> operator+(std::vector<Option> a, const std::vector<Option>& b);
+
+/// Thrown by help_if_asked when it has printed the usage and the options, for run_program to end well.
+struct HelpGiven {};
+void help_if_asked(const Arguments& arguments, const std::string& usage, const std::vector<Option>& options);
+/// Throws Error for a word that is no option.
+void no_other_words(const Arguments& arguments);
+
+/// What was given or, where that is empty, the variable of the environment.
+std::string or_environment(const std::string& given, const char* variable);
+
+/// --slots or, if it is not given, one a core.
+int slots_from(const Arguments& arguments);
+
+/// A main's body, and the exit code: what `run` returns, or 1 after one line for what it throws. A daemon's lines have the time.
+int run_program(const std::string& name, bool daemon, const std::function<int()>& run);
 
 /// A whole number within [least, most]; throws Error with `what` as the value's name.
 long whole_number(const std::string& text, const std::string& what, long least, long most);

@@ -4,6 +4,7 @@
 #include "distribute/common/error.h"
 
 #include <cerrno>
+#include <cstdio>
 #include <cstdlib>
 #include <ctime>
 #include <fcntl.h>
@@ -81,6 +82,11 @@ void move_durably(const fs::path& from, const fs::path& to) {
 	if (!synced || ::rename(from.c_str(), to.c_str()) != 0)
 		throw system_error("cannot write " + to.string());
 	sync_folder(to.parent_path());
+}
+
+void write_out(std::string_view data, const std::string& what) {
+	if (std::fwrite(data.data(), 1, data.size(), stdout) != data.size() || std::fflush(stdout) != 0)
+		throw system_error("cannot write " + what);
 }
 
 std::string read_file(const fs::path& file) {

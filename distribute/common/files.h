@@ -20,6 +20,8 @@ int write_file(const fs::path& file, std::string_view data);
 void write_scratch(const fs::path& file, std::string_view data);
 /// Moves a file that is already written to its place, as durably.
 void move_durably(const fs::path& from, const fs::path& to);
+/// All of it to stdout; throws Error, naming it as `what`.
+void write_out(std::string_view data, const std::string& what);
 /// The whole content; throws Error.
 std::string read_file(const fs::path& file);
 

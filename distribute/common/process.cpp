@@ -124,6 +124,12 @@ void Process::signal(int number) const {
 		::kill(pid, number);
 }
 
+std::string host_name() {
+	char name[256] = "";
+	::gethostname(name, sizeof name - 1);
+	return name;
+}
+
 int run(const Command& command) {
 	Process process(command);
 	while (!process.over(-1)) {

@@ -45,6 +45,9 @@ private:
 	int status = -1;
 };
 
+/// This machine's, or nothing.
+std::string host_name();
+
 /// Runs to the end and returns the exit code.
 int run(const Command& command);
 

@@ -78,11 +78,6 @@ struct Library {
 
 using File = std::unique_ptr<std::FILE, decltype(&std::fclose)>;
 
-std::string from_environment(const std::string& given, const char* variable) {
-	const char* value = std::getenv(variable);
-	return given.empty() && value ? value : given;
-}
-
 } // namespace
 
 Client::Client(const Access_to& a) : access(a) {
@@ -239,17 +234,27 @@ void Client::download(const std::string& path, const std::filesystem::path& file
 	}
 }
 
+const std::vector<Option> access_options = {
+	{"--server", "URL", "also from BHFARM_SERVER; default http://127.0.0.1:7700", ""},
+	{"--token-file", "FILE", "the token in it opens; also from BHFARM_TOKEN_FILE", ""},
+	{"--ca", "FILE", "the certificate authority to trust, PEM; also from BHFARM_CA", ""},
+};
+
+Access_to access_from(const Arguments& arguments) {
+	return access_from(arguments.get("--server"), arguments.get("--token-file"), arguments.get("--ca"));
+}
+
 Access_to access_from(const std::string& url, const std::string& token_file, const std::string& authority) {
 	Access_to access;
-	if (const std::string u = from_environment(url, "BHFARM_SERVER"); !u.empty())
+	if (const std::string u = or_environment(url, "BHFARM_SERVER"); !u.empty())
 		access.url = u.find("://") == std::string::npos ? "http://" + u : u;
-	if (const std::string f = from_environment(token_file, "BHFARM_TOKEN_FILE"); !f.empty()) {
+	if (const std::string f = or_environment(token_file, "BHFARM_TOKEN_FILE"); !f.empty()) {
 		access.token = read_secret(f);
 		access.token = access.token.substr(0, access.token.find_first_of("\r\n \t"));
 		if (access.token.empty())
 			throw Error("the token file " + f + " is empty");
 	}
-	access.authority = from_environment(authority, "BHFARM_CA");
+	access.authority = or_environment(authority, "BHFARM_CA");
 	if (!access.authority.empty())
 		read_file(access.authority); // or what it says of a server would be no help
 	return access;

@@ -3,6 +3,7 @@
 #ifndef FARM_HTTP_CLIENT_H
 #define FARM_HTTP_CLIENT_H
 
+#include "distribute/common/arguments.h"
 #include "distribute/common/error.h"
 
 #include <atomic>
@@ -65,8 +66,11 @@ private:
 	const std::atomic<bool>* stop = nullptr;
 };
 
-/// From --server, --token-file and --ca or, where those are empty, BHFARM_SERVER, BHFARM_TOKEN_FILE and BHFARM_CA. Throws Error
-/// for a token file that cannot be read.
+/// --server, --token-file and --ca, of all that talk to a server.
+extern const std::vector<Option> access_options;
+/// What they say or, where they are empty, BHFARM_SERVER, BHFARM_TOKEN_FILE and BHFARM_CA. Throws Error for a token file that
+/// cannot be read.
+Access_to access_from(const Arguments& arguments);
 Access_to access_from(const std::string& url, const std::string& token_file, const std::string& authority);
 
 /// Whether HOST:PORT (or HOST) is this machine alone.

@@ -3,6 +3,7 @@
 #ifndef FARM_POVRAY_H
 #define FARM_POVRAY_H
 
+#include "distribute/common/arguments.h"
 #include "distribute/common/process.h"
 #include "distribute/protocol/messages.h"
 #include "distribute/sandbox/sandbox.h"
@@ -34,6 +35,7 @@ bool did_not_start(const std::string& log);
 /// Runs such a command to its end, again where it did not start; its exit code and what it printed to its log.
 std::pair<int, std::string> run_povray(const Command& command);
 
+inline const Option povray_option{"--povray", "FILE", "the povray to run; default the one beside this program", ""};
 /// The program beside ours, or what --povray says; throws Error if there is none.
 std::filesystem::path find_povray(const std::string& given);
 /// "POV-Ray 3.7.0.10.unofficial", the first line of `povray --version`; throws Error if it does not run.

@@ -9,7 +9,6 @@
 
 #include <boost/asio/signal_set.hpp>
 
-#include <cstdio>
 #include <cstring>
 #include <malloc.h>
 #include <sstream>
@@ -31,11 +30,10 @@ const std::vector<Option> options = {
 	{"--keep-days", "N", "jobs that have ended are removed after so long", "30"},
 	{"--keep-gb", "N", "and the oldest of them while the spool is larger; 0: whatever it is", "0"},
 	{"--source", "", "writes the source of this program and of povray's changes to stdout, as .tar.gz", ""},
-	{"--help", "", "this", ""},
 };
 
 std::vector<std::string> read_tokens(const std::string& given) {
-	const std::string file = given.empty() && std::getenv("BHFARM_TOKEN_FILE") ? std::getenv("BHFARM_TOKEN_FILE") : given;
+	const std::string file = or_environment(given, "BHFARM_TOKEN_FILE");
 	std::vector<std::string> tokens;
 	if (file.empty())
 		return tokens;
@@ -121,24 +119,15 @@ int serve(const Arguments& arguments) {
 } // namespace
 
 int main(int argc, char** argv) {
-	name_program("bhfarm-server", true);
-	try {
+	return run_program("bhfarm-server", true, [&] {
 		const Arguments arguments({argv + 1, argv + argc}, options);
-		if (arguments.has("--help")) {
-			std::printf("bhfarm-server [options]\nKeeps jobs and lends their strips to workers. docs/manual.md has more.\n%s",
-				help_lines(options).c_str());
+		help_if_asked(arguments,
+			"bhfarm-server [options]\nKeeps jobs and lends their strips to workers. docs/manual.md has more.", options);
+		if (arguments.has("--source")) {
+			write_out(source_archive(), "the source");
 			return 0;
 		}
-		if (arguments.has("--source")) {
-			const std::string_view source = source_archive();
-			return std::fwrite(source.data(), 1, source.size(), stdout) == source.size() && std::fflush(stdout) == 0 ? 0 : 1;
-		}
-		if (!arguments.rest.empty())
-			throw Error("what is '" + arguments.rest[0] + "'? --help lists the options");
+		no_other_words(arguments);
 		return serve(arguments);
-	} catch (const std::exception& e) {
-		name_program("bhfarm-server", false);
-		say(e.what());
-		return 1;
-	}
+	});
 }

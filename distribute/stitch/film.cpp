@@ -54,11 +54,4 @@ void make_film(const std::vector<fs::path>& pictures, double rate, const fs::pat
 	move_durably(made, film);
 }
 
-bool can_film() {
-	Command command;
-	command.words = {"ffmpeg", "-version"};
-	command.log = "/dev/null";
-	return run(command) == 0;
-}
-
 } // namespace farm

@@ -14,8 +14,5 @@ namespace farm {
 void make_film(const std::vector<std::filesystem::path>& pictures, double rate, const std::filesystem::path& film,
 	const std::filesystem::path& work);
 
-/// Whether ffmpeg is there.
-bool can_film();
-
 } // namespace farm
 #endif

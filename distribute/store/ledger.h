@@ -105,7 +105,6 @@ void end_leases(Database& db, JobId job);
 void add_report(Database& db, const ReportRow& row);
 /// Those reports of the strip whose pixels' hash starts with these 16 digits; none of them if `pixels` is empty.
 void set_settled(Database& db, JobId job, int strip, const std::string& pixels);
-void remove_report(Database& db, JobId job, int strip, const WorkerId& worker);
 void add_failure(Database& db, const FailureRow& row);
 void clear_failures(Database& db, JobId job);
 void set_aside(Database& db, const WorkerId& worker, const std::string& why, double now);

@@ -56,11 +56,6 @@ void set_settled(Database& db, JobId job, int strip, const std::string& pixels) 
 	(s << pixels << job << strip).run();
 }
 
-void remove_report(Database& db, JobId job, int strip, const WorkerId& worker) {
-	Statement s(db, "DELETE FROM report WHERE job = ? AND strip = ? AND worker = ?");
-	(s << job << strip << worker).run();
-}
-
 void add_failure(Database& db, const FailureRow& row) {
 	Statement s(db, "INSERT INTO failure(job, strip, worker, at, line, log) VALUES(?, ?, ?, ?, ?, ?)");
 	(s << row.job << row.strip << row.worker << row.when << row.line << row.log).run();

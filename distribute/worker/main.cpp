@@ -5,20 +5,16 @@
 #include "distribute/render/povray.h"
 #include "distribute/worker/worker.h"
 
-#include <cstdio>
+#include <cstdlib>
 #include <pthread.h>
 #include <signal.h>
 #include <thread>
-#include <unistd.h>
 
 namespace {
 
 using namespace farm;
 
 const std::vector<Option> own_options = {
-	{"--server", "URL", "also from BHFARM_SERVER; default http://127.0.0.1:7700", ""},
-	{"--token-file", "FILE", "the token in it opens; also from BHFARM_TOKEN_FILE", ""},
-	{"--ca", "FILE", "the certificate authority to trust, PEM; also from BHFARM_CA", ""},
 	{"--slots", "N", "strips at a time; default one a core", ""},
 	{"--name", "NAME", "for people; default the host's name", ""},
 	{"--idle-exit", "SECONDS", "leave after so long without work; 0: stay", "0"},
@@ -26,28 +22,16 @@ const std::vector<Option> own_options = {
 	{"--nice", "N", "niceness of povray", "19"},
 	{"--when-idle", "", "take nothing while others use more than half of the cores", ""},
 	{"--cache", "DIR", "where scenes are kept; default $XDG_CACHE_HOME/bhfarm", ""},
-	{"--povray", "FILE", "the povray to run; default the one beside this program", ""},
+	povray_option,
 };
-
-std::vector<Option> all_options() {
-	std::vector<Option> all = own_options;
-	all.insert(all.end(), limit_options.begin(), limit_options.end());
-	all.push_back({"--help", "", "this", ""});
-	return all;
-}
-
-std::string host_name() {
-	char name[256] = "";
-	::gethostname(name, sizeof name - 1);
-	return *name ? name : "worker";
-}
 
 int work(const Arguments& arguments) {
 	WorkerSettings settings;
-	settings.server = access_from(arguments.get("--server"), arguments.get("--token-file"), arguments.get("--ca"));
+	settings.server = access_from(arguments);
 	settings.name = arguments.get("--name").empty() ? host_name() : arguments.get("--name");
-	const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-	settings.slots = arguments.has("--slots") ? static_cast<int>(arguments.number("--slots", 1, 1024)) : cores;
+	if (settings.name.empty())
+		settings.name = "worker";
+	settings.slots = slots_from(arguments);
 	settings.idle_exit = static_cast<double>(arguments.number("--idle-exit", 0, 1000000));
 	settings.grace = static_cast<double>(arguments.number("--grace", 0, 1000000));
 	settings.renderer.nice = static_cast<int>(arguments.number("--nice", 0, 19));
@@ -73,29 +57,20 @@ int work(const Arguments& arguments) {
 			worker.stop(s == SIGTERM && ++count == 1);
 	}).detach();
 	worker.run();
-	return 0;
+	std::_Exit(0); // the signals' thread still looks at what would be torn down
 }
 
 } // namespace
 
 int main(int argc, char** argv) {
-	name_program("bhfarm-worker", true);
-	try {
-		const std::vector<Option> options = all_options();
+	return run_program("bhfarm-worker", true, [&] {
+		const auto options = access_options + own_options + limit_options;
 		const Arguments arguments({argv + 1, argv + argc}, options);
-		if (arguments.has("--help")) {
-			std::printf("bhfarm-worker [options]\nRenders strips for a bhfarm-server. SIGTERM: finishes them, SIGINT: gives them "
-						"back, then leaves.\n%s",
-				help_lines(options).c_str());
-			return 0;
-		}
-		if (!arguments.rest.empty())
-			throw Error("what is '" + arguments.rest[0] + "'? --help lists the options");
-		const int code = work(arguments);
-		std::_Exit(code); // the signals' thread still looks at what would be torn down
-	} catch (const std::exception& e) {
-		name_program("bhfarm-worker", false);
-		say(e.what());
-		return 1;
-	}
+		help_if_asked(arguments,
+			"bhfarm-worker [options]\n"
+			"Renders strips for a bhfarm-server. SIGTERM: finishes them, SIGINT: gives them back, then leaves.",
+			options);
+		no_other_words(arguments);
+		return work(arguments);
+	});
 }

@@ -4,6 +4,7 @@
 //   farm_fuzz --write FOLDER       the good ones as files, to start libFuzzer from
 #include "distribute/common/files.h"
 #include "distribute/protocol/messages.h"
+#include "tests/distribute/good_job.h"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
@@ -73,15 +74,9 @@ std::string png(int depth, int colours) {
 }
 
 std::vector<std::string> good() {
-	JobSpec spec;
-	spec.name = "film";
-	spec.bundle = std::string(64, 'a');
-	spec.options = {"Antialias=On", "Declare=A=1"};
+	JobSpec spec = good_job();
 	spec.width = 5;
 	spec.height = 6;
-	spec.animation = true;
-	spec.first = 1;
-	spec.last = 24;
 	spec.strip_rows = 3;
 	Task task;
 	task.lease = task.job = task.rows = 1;

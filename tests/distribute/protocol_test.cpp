@@ -7,6 +7,7 @@
 #include "distribute/protocol/messages.h"
 #include "distribute/render/povray.h"
 #include "distribute/scene/ini.h"
+#include "tests/distribute/good_job.h"
 
 #include <gtest/gtest.h>
 
@@ -17,21 +18,6 @@
 using namespace farm;
 
 namespace {
-
-JobSpec good() {
-	JobSpec spec;
-	spec.name = "film";
-	spec.bundle = std::string(64, 'a');
-	spec.options = {"Antialias=On", "Declare=A=1"};
-	spec.width = 640;
-	spec.height = 360;
-	spec.animation = true;
-	spec.first = 1;
-	spec.last = 24;
-	spec.digits = 2;
-	spec.strip_rows = 64;
-	return spec;
-}
 
 /// What is wrong with a message, in one line; empty if nothing is.
 template <class T> std::string fault(const json& j) {
@@ -45,7 +31,7 @@ template <class T> std::string fault(const json& j) {
 }
 
 TEST(Protocol, AJobComesBackAsItWas) {
-	const json sent = good();
+	const json sent = good_job();
 	const JobSpec back = parse_object(sent.dump()).get<JobSpec>();
 	EXPECT_EQ(json(back), sent);
 	EXPECT_EQ(back.frames(), 24);
@@ -61,30 +47,30 @@ TEST(Protocol, EachFieldIsChecked) {
 		{"digits", 11}, {"format", "tga"}, {"format", nullptr}, {"bits", 12}, {"bits", 32}, {"strip_rows", 0}, {"animation", 1},
 		{"priority", 101}, {"film_rate", -1}, {"film_rate", "x"}, {"last", 18446744073709551615u}};
 	for (const auto& [key, value] : bad) {
-		json j = good();
+		json j = good_job();
 		j[key] = value;
 		EXPECT_NE(fault<JobSpec>(j), "") << key << " = " << value;
 	}
 	for (const char* line : {"A=1", "Declare=A=-1.5", "Library_Path=\"a b\"", "Input_File_Name='x\"y.pov'", "A=x[1]"}) {
-		json j = good();
+		json j = good_job();
 		j["options"] = {line};
 		EXPECT_EQ(fault<JobSpec>(j), "") << line;
 	}
 	// What POV-Ray's INI reader would take for more than one setting, or let it swallow those that follow.
 	for (const char* line : {"[a=b]", "+O/etc/x=1", "-A=1", ";=1", "#=1", "=1", "A=", "A B=1", "A=\"open", "A='open",
 			 "A=\"x\" B=2", "A=x y", "A=x,y", "A=1;", "\"A\"=1", "A=\x01", "A=x\r", "/x=1", "a.ini A=1"}) {
-		json j = good();
+		json j = good_job();
 		j["options"] = {line};
 		EXPECT_NE(fault<JobSpec>(j), "") << line;
 	}
-	const json all = good();
+	const json all = good_job();
 	for (const auto& [key, value] : all.items()) {
-		json j = good();
+		json j = good_job();
 		j.erase(key);
 		const bool may = key == "whole_because" || key == "priority" || key == "film_rate" || key == "client_key";
 		EXPECT_EQ(fault<JobSpec>(j).empty(), may) << key;
 	}
-	json more = good();
+	json more = good_job();
 	more["from_the_future"] = 1;
 	EXPECT_EQ(fault<JobSpec>(more), "");
 }
@@ -121,7 +107,7 @@ TEST(Protocol, WhatIsNoJsonIsRefused) {
 			 std::string("{\"a\":\"\xff\"}"), "{\"a\":" + deep, std::string("{\"a\":1}x"), std::string("\0", 1)})
 		EXPECT_THROW(parse_object(text), Error) << text.substr(0, 20);
 	std::mt19937 random(1);
-	const std::string sent = json(good()).dump();
+	const std::string sent = json(good_job()).dump();
 	for (int i = 0; i < 20000; ++i) { // whatever comes, it is taken or refused
 		std::string text = sent;
 		for (int k = 0; k < 3; ++k)
@@ -226,7 +212,7 @@ TEST(Povray, ErrorsAsOneLine) {
 
 TEST(Povray, RowsAsItCountsThem) {
 	Task task;
-	task.spec = good();
+	task.spec = good_job();
 	const auto rows = [&](int row, int count) {
 		task.row = row;
 		task.rows = count;
