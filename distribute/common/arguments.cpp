@@ -63,14 +63,17 @@ long Arguments::number(const std::string& name, long least, long most) const {
 }
 
 double Arguments::real(const std::string& name, double least, double most) const {
-	const std::string& text = get(name);
+	return real_number(get(name), name, least, most);
+}
+
+double real_number(const std::string& text, const std::string& what, double least, double most) {
 	double value = 0;
 	const char* end = text.data() + text.size();
 	const auto [at, error] = std::from_chars(text.data(), end, value);
 	if (error != std::errc() || at != end || !(value >= least && value <= most)) {
 		std::ostringstream range;
 		range << least << " to " << most;
-		throw Error(name + " is '" + text + "'; it must be a number from " + range.str());
+		throw Error(what + " is '" + text + "'; it must be a number from " + range.str());
 	}
 	return value;
 }

@@ -58,6 +58,8 @@ int run_program(const std::string& name, bool daemon, const std::function<int()>
 
 /// A whole number within [least, most]; throws Error with `what` as the value's name.
 long whole_number(const std::string& text, const std::string& what, long least, long most);
+/// Likewise, with decimals.
+double real_number(const std::string& text, const std::string& what, double least, double most);
 
 } // namespace farm
 #endif

@@ -18,16 +18,6 @@
 namespace farm {
 namespace {
 
-void sync_folder(const fs::path& folder) {
-	const int d = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-	if (d < 0)
-		throw system_error("cannot open " + folder.string());
-	const int failed = ::fsync(d);
-	::close(d);
-	if (failed)
-		throw system_error("cannot sync " + folder.string());
-}
-
 /// 0, or errno of what went wrong. `last` is called with the descriptor before it is closed.
 template <class Last> int write_and(Last last, const fs::path& file, std::string_view data) {
 	const int d = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
@@ -51,6 +41,16 @@ fs::path user_folder(const char* variable, const char* otherwise) {
 }
 
 } // namespace
+
+void sync_folder(const fs::path& folder) {
+	const int d = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+	if (d < 0)
+		throw system_error("cannot open " + folder.string());
+	const int failed = ::fsync(d);
+	::close(d);
+	if (failed)
+		throw system_error("cannot sync " + folder.string());
+}
 
 int write_file(const fs::path& file, std::string_view data) {
 	return write_and([](int) { return 0; }, file, data);

@@ -18,6 +18,8 @@ void write_durably(const fs::path& file, std::string_view data);
 int write_file(const fs::path& file, std::string_view data);
 /// Likewise of what is only read by the next program and then removed; throws Error.
 void write_scratch(const fs::path& file, std::string_view data);
+/// So that what was put into it, or renamed there, survives a power cut. Throws Error.
+void sync_folder(const fs::path& folder);
 /// Moves a file that is already written to its place, as durably.
 void move_durably(const fs::path& from, const fs::path& to);
 /// All of it to stdout; throws Error, naming it as `what`.

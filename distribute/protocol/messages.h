@@ -8,6 +8,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -69,6 +70,10 @@ struct JobSpec {
 	int frame(int index) const { return first + index * step; }
 	int strips_per_frame() const { return (height + strip_rows - 1) / strip_rows; }
 	int strips() const { return frames() * strips_per_frame(); }
+	/// Of a job's strip, counted frame by frame: its frame, its first row, and how many it has.
+	int frame_of(int strip) const { return frame(strip / strips_per_frame()); }
+	int row_of(int strip) const { return strip % strips_per_frame() * strip_rows; }
+	int rows_of(int strip) const { return std::min(strip_rows, height - row_of(strip)); }
 	/// The picture's file name, as POV-Ray makes it.
 	std::string picture(int frame) const;
 	std::string suffix() const { return format == Format::png ? ".png" : ".exr"; }

@@ -38,18 +38,12 @@ fs::path plain_name(const fs::path& folder, const fs::path& scratch, size_t numb
 	return link;
 }
 
-std::vector<fs::path> folders_of(const SettledScene& scene) {
-	std::vector<fs::path> folders = {scene.scene.parent_path()};
-	folders.insert(folders.end(), scene.libraries.begin(), scene.libraries.end());
-	return folders;
-}
-
 /// The scene, with everything said about it so far, behind the fence in a folder of its own.
 Command scene_command(const SettledScene& scene, std::string ini, const Trier& trier, const fs::path& scratch,
 	const std::map<std::string, std::string>& environment = {}) {
 	if (!plain(scene.scene.filename()))
 		throw Error("POV-Ray cannot open " + scene.scene.string() + ": give it a name of ASCII letters alone");
-	const std::vector<fs::path> folders = folders_of(scene);
+	const std::vector<fs::path> folders = scene.folders();
 	for (size_t i = 0; i < folders.size(); ++i)
 		ini += scene_in(plain_name(folders[i], scratch, i));
 	write_scratch(scratch / "dry.ini", ini + "Output_To_File=Off\n");
@@ -114,7 +108,7 @@ Parsed parse(const SettledScene& scene, int frame, const Trier& trier) {
 	}
 	parsed.said = flat(log);
 	std::istringstream lines(fs::exists(list) ? read_file(list) : "");
-	const std::vector<fs::path> folders = folders_of(scene);
+	const std::vector<fs::path> folders = scene.folders();
 	for (std::string line; std::getline(lines, line);) {
 		for (size_t i = 0; i < folders.size(); ++i)
 			if (const std::string front = (plain_name(folders[i], scratch.path(), i) / "").string(); line.rfind(front, 0) == 0)

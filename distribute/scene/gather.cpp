@@ -19,8 +19,7 @@ namespace {
 /// The names by which the scene may have asked for a file: POV-Ray puts what it was asked for behind the folder in which it found
 /// it.
 std::set<std::string> asked_names(const std::string& found, const SettledScene& scene) {
-	std::vector<fs::path> folders = {scene.scene.parent_path()};
-	folders.insert(folders.end(), scene.libraries.begin(), scene.libraries.end());
+	const std::vector<fs::path> folders = scene.folders();
 	std::set<std::string> names;
 	for (const auto& folder : folders) {
 		const std::string front = (folder / "").string();

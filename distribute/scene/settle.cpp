@@ -267,4 +267,10 @@ SettledScene settle(const std::vector<std::string>& words, const Wishes& wishes)
 	return std::move(settler.result);
 }
 
+std::vector<fs::path> SettledScene::folders() const {
+	std::vector<fs::path> all = {scene.parent_path()};
+	all.insert(all.end(), libraries.begin(), libraries.end());
+	return all;
+}
+
 } // namespace farm

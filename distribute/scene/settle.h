@@ -22,6 +22,9 @@ struct SettledScene {
 	std::vector<std::filesystem::path> libraries; ///< where POV-Ray looks, in order, after the scene's own folder
 	std::filesystem::path output;                 ///< the folder for the pictures; empty: the one we are in
 	std::vector<std::string> remarks;             ///< what of the words is left out, and why; one line each
+
+	/// Where POV-Ray looks for files, in order.
+	std::vector<std::filesystem::path> folders() const;
 };
 
 /// `words`: the .ini or .pov first, then POV-Ray's own words in order. Reads the povray.ini that POV-Ray would read (POVINI,

@@ -93,14 +93,8 @@ void Scheduler::settle(JobState& j, int strip, const WorkerId& who, PixelHash ha
 	++j.settled;
 	changes.settled.push_back({j.id, strip});
 	// A twin that is still out may go on: its answer is a check that costs nothing more. The last strips' twins are stopped.
-	if (j.settled == j.strips || j.stage != Stage::running) {
-		const auto out = j.out.find(strip);
-		const auto ids = out == j.out.end() ? std::vector<LeaseId>() : out->second;
-		for (const LeaseId l : ids) {
-			changes.ended.push_back(lease_states.at(l));
-			end_lease(l);
-		}
-	}
+	if (j.settled == j.strips || j.stage != Stage::running)
+		end_leases_of(j, strip, changes);
 	update_ready(j);
 	for (const Vote& v : t.votes) {
 		j.asked.erase(v.worker);
@@ -122,13 +116,8 @@ void Scheduler::check_done(JobState& j, Time now, Changes& changes) {
 	if (j.settled < j.strips)
 		return;
 	j.stage = Stage::done;
-	while (!j.out.empty()) {
-		const auto ids = j.out.begin()->second;
-		for (const LeaseId l : ids) {
-			changes.ended.push_back(lease_states.at(l));
-			end_lease(l);
-		}
-	}
+	while (!j.out.empty())
+		end_leases_of(j, j.out.begin()->first, changes);
 	update_ready(j);
 	changes.done.push_back(j.id);
 }

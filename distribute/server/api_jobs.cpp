@@ -49,9 +49,8 @@ void add_job_routes(Router& router, Farm& farm) {
 		const auto failures = co_await in_pool(farm.io(), farm.threads(), read);
 		json list = json::array();
 		for (const FailureRow& f : failures)
-			list.push_back({{"strip", f.strip}, {"frame", spec.frame(f.strip / spec.strips_per_frame())},
-				{"row", f.strip % spec.strips_per_frame() * spec.strip_rows}, {"worker", f.worker}, {"when", f.when},
-				{"line", f.line}, {"log", f.log}});
+			list.push_back({{"strip", f.strip}, {"frame", spec.frame_of(f.strip)}, {"row", spec.row_of(f.strip)},
+				{"worker", f.worker}, {"when", f.when}, {"line", f.line}, {"log", f.log}});
 		co_return answer({{"failures", list}});
 	});
 	router.add("GET", "/v1/jobs/*/frames/*", [&farm](Request& r) -> Awaitable<Response> {

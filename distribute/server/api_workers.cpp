@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // What workers ask.
+#include "distribute/common/arguments.h"
 #include "distribute/common/error.h"
 #include "distribute/common/hash.h"
 #include "distribute/protocol/fields.h"
 #include "distribute/server/api.h"
 
 #include <algorithm>
-#include <charconv>
 
 namespace farm {
 namespace {
@@ -21,15 +21,6 @@ std::vector<LeaseId> lease_list(const json& body) {
 		list.push_back(id.get<LeaseId>());
 	}
 	return list;
-}
-
-double seconds_of(const Request& r) {
-	const std::string text = r.asked("seconds", "0");
-	double value = 0;
-	const auto [at, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-	if (error != std::errc() || at != text.data() + text.size() || !(value >= 0 && value < 1e9))
-		throw Error("seconds is '" + text + "'; it must be a number, not negative");
-	return value;
 }
 
 } // namespace
@@ -87,7 +78,7 @@ void add_worker_routes(Router& router, Farm& farm) {
 			const std::string hash = r.asked("sha256");
 			if (!is_sha256(hash))
 				throw Error("sha256 is '" + hash + "'; it must be 64 hexadecimal digits");
-			co_return verdict(co_await farm.report(lease, r.file, hash, seconds_of(r)));
+			co_return verdict(co_await farm.report(lease, r.file, hash, real_number(r.asked("seconds", "0"), "seconds", 0, 1e9)));
 		},
 		limits::strip_bytes, Body::file);
 	router.add(

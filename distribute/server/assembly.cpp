@@ -26,19 +26,22 @@ bool Farm::frame_complete(const Job& job, int index) const {
 	return true;
 }
 
+fs::path Farm::settled_file(const Job& job, int strip) const {
+	const PixelHash hash = scheduler.jobs().at(job.row.id).result[static_cast<size_t>(strip)].hash;
+	return spool.strip(job.row.id, strip, digits(hash), job.row.spec.suffix());
+}
+
 std::optional<fs::path> Farm::settled_strip(JobId id, int strip) const {
-	const auto state = scheduler.jobs().find(id);
-	if (state == scheduler.jobs().end() || scheduler.state(id, strip) != StripState::settled)
+	if (!scheduler.jobs().count(id) || scheduler.state(id, strip) != StripState::settled)
 		return std::nullopt;
-	return spool.strip(id, strip, digits(state->second.result[static_cast<size_t>(strip)].hash), job(id).row.spec.suffix());
+	return settled_file(job(id), strip);
 }
 
 std::vector<fs::path> Farm::strip_files(const Job& job, int index) const {
 	const int per = job.row.spec.strips_per_frame();
-	const auto& result = scheduler.jobs().at(job.row.id).result;
 	std::vector<fs::path> files;
 	for (int s = index * per; s < (index + 1) * per; ++s)
-		files.push_back(spool.strip(job.row.id, s, digits(result[static_cast<size_t>(s)].hash), job.row.spec.suffix()));
+		files.push_back(settled_file(job, s));
 	return files;
 }
 

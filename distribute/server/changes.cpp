@@ -6,20 +6,17 @@
 namespace farm {
 
 std::string Farm::place(const JobSpec& spec, int strip) const {
-	const int per = spec.strips_per_frame(), row = strip % per * spec.strip_rows;
-	const std::string rows =
-		per == 1 ? "" : "rows " + std::to_string(row + 1) + " to " + std::to_string(std::min(row + spec.strip_rows, spec.height));
-	const std::string frame = spec.animation ? "frame " + std::to_string(spec.frame(strip / per)) : "";
+	const int row = spec.row_of(strip);
+	const std::string rows = spec.strips_per_frame() == 1
+								 ? ""
+								 : "rows " + std::to_string(row + 1) + " to " + std::to_string(row + spec.rows_of(strip));
+	const std::string frame = spec.animation ? "frame " + std::to_string(spec.frame_of(strip)) : "";
 	return frame.empty() && rows.empty() ? "the picture" : frame + (frame.empty() || rows.empty() ? "" : ", ") + rows;
 }
 
-std::string Farm::names_of(const std::vector<WorkerId>& workers) const {
-	std::string names;
-	for (const WorkerId& id : workers) {
-		const auto guest = all_guests.find(id);
-		names += (names.empty() ? "" : " and ") + (guest == all_guests.end() ? id : guest->second.hello.name);
-	}
-	return names;
+const std::string& Farm::name_of(const WorkerId& worker) const {
+	const auto guest = all_guests.find(worker);
+	return guest == all_guests.end() ? worker : guest->second.hello.name;
 }
 
 void Farm::apply(const Changes& changes) {
@@ -44,8 +41,7 @@ void Farm::apply(const Changes& changes) {
 	for (const StripRef& s : changes.settled)
 		strip_settled(s.job, s.strip);
 	for (const auto& [worker, why] : changes.aside) {
-		const auto guest = all_guests.find(worker);
-		say("worker " + (guest == all_guests.end() ? worker : guest->second.hello.name) + " is set aside: " + why);
+		say("worker " + name_of(worker) + " is set aside: " + why);
 		note([=, id = worker, because = why, at = wall_time()](Database& db) { rows::set_aside(db, id, because, at); });
 		events.worker(worker);
 	}
@@ -62,8 +58,11 @@ void Farm::apply(const Changes& changes) {
 		Job& job = all_jobs.at(s.job);
 		const auto split = changes.split.find(s.job);
 		if (split != changes.split.end()) {
+			std::string names;
+			for (const WorkerId& worker : split->second)
+				names += (names.empty() ? "" : " and ") + name_of(worker);
 			set_stage(job, Stage::failed,
-				place(job.row.spec, s.strip) + " came out differently on " + names_of(split->second) +
+				place(job.row.spec, s.strip) + " came out differently on " + names +
 					": with one more worker, 'retry' finds out which is right");
 		} else {
 			std::string line = "workers that had it fell silent";

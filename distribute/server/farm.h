@@ -110,13 +110,15 @@ private:
 	Awaitable<void> tick();
 	// changes.cpp
 	void apply(const Changes& changes);
-	std::string names_of(const std::vector<WorkerId>& workers) const;
+	/// What people call the worker: its name or, once it has gone, its id.
+	const std::string& name_of(const WorkerId& worker) const;
 	std::string place(const JobSpec& spec, int strip) const;
 	// assembly.cpp
 	void strip_settled(JobId job, int strip);
 	Awaitable<void> assemble();
 	Awaitable<void> stitch_frame(JobId job, int index);
 	Awaitable<void> finish(JobId job);
+	fs::path settled_file(const Job& job, int strip) const;
 	std::vector<fs::path> strip_files(const Job& job, int index) const;
 	bool frame_complete(const Job& job, int index) const;
 

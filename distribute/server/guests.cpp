@@ -8,6 +8,13 @@
 #include <algorithm>
 
 namespace farm {
+namespace {
+
+std::string has_ended(LeaseId id) { return "lease " + std::to_string(id) + " has ended"; }
+
+HttpError stranger(const WorkerId& worker) { return {404, "this server does not know worker " + worker + "; say hello first"}; }
+
+} // namespace
 
 // All workers make the same pixels as the first of those that are here.
 void Farm::welcome(const Hello& hello, const std::string& from) {
@@ -58,7 +65,7 @@ Awaitable<std::optional<Task>> Farm::take(WorkerId worker, double wait, std::sha
 	const Time until = now() + wait;
 	while (true) {
 		if (!scheduler.workers().count(worker))
-			throw HttpError(404, "this server does not know worker " + worker + "; say hello first");
+			throw stranger(worker);
 		if (const auto lease = scheduler.take(worker, now())) {
 			Ledger::Work work = [l = *lease](Database& db) { rows::add_lease(db, l); };
 			try {
@@ -78,9 +85,9 @@ Awaitable<std::optional<Task>> Farm::take(WorkerId worker, double wait, std::sha
 			Task task;
 			task.lease = lease->id;
 			task.job = lease->job;
-			task.frame = spec.frame(lease->strip / spec.strips_per_frame());
-			task.row = lease->strip % spec.strips_per_frame() * spec.strip_rows;
-			task.rows = std::min(spec.strip_rows, spec.height - task.row);
+			task.frame = spec.frame_of(lease->strip);
+			task.row = spec.row_of(lease->strip);
+			task.rows = spec.rows_of(lease->strip);
 			task.spec = spec;
 			events.strip(task.job, lease->strip, worker);
 			co_return task;
@@ -98,19 +105,18 @@ Awaitable<std::optional<Task>> Farm::take(WorkerId worker, double wait, std::sha
 
 std::vector<LeaseId> Farm::beat(const WorkerId& worker, const std::vector<LeaseId>& leases) {
 	if (!scheduler.workers().count(worker))
-		throw HttpError(404, "this server does not know worker " + worker + "; say hello first");
+		throw stranger(worker);
 	return scheduler.beat(worker, leases, now());
 }
 
 Awaitable<std::string> Farm::report(LeaseId id, fs::path file, std::string sha256, double seconds) {
 	const Lease* known = scheduler.lease(id);
 	if (!known)
-		co_return "lease " + std::to_string(id) + " has ended";
+		co_return has_ended(id);
 	const Lease lease = *known;
 	// The checks below must not outlast it.
 	scheduler.beat(lease.worker, {id}, now());
 	const JobSpec spec = job(lease.job).row.spec;
-	const int row = lease.strip % spec.strips_per_frame() * spec.strip_rows, rows = std::min(spec.strip_rows, spec.height - row);
 
 	struct Checked {
 		std::string pixels, kind, damage;
@@ -122,7 +128,7 @@ Awaitable<std::string> Farm::report(LeaseId id, fs::path file, std::string sha25
 		if (c.torn)
 			return c;
 		try {
-			c.pixels = check_strip(spec, row, rows, file);
+			c.pixels = check_strip(spec, spec.row_of(lease.strip), spec.rows_of(lease.strip), file);
 			c.kind = kind_of(spec.format, file);
 		} catch (const Error& e) {
 			c.damage = e.what();
@@ -156,21 +162,20 @@ Awaitable<std::string> Farm::report(LeaseId id, fs::path file, std::string sha25
 	};
 	co_await commit(std::move(work));
 	if (!*held)
-		co_return "lease " + std::to_string(id) + " has ended";
+		co_return has_ended(id);
 	Changes changes;
 	const bool taken = scheduler.complete(id, std::stoull(checked.pixels.substr(0, 16), nullptr, 16), now(), changes);
 	apply(changes);
 	events.strip(lease.job, lease.strip, lease.worker);
-	co_return taken ? "" : "lease " + std::to_string(id) + " has ended";
+	co_return taken ? "" : has_ended(id);
 }
 
 Awaitable<std::string> Farm::failed(LeaseId id, Failure failure) {
 	const Lease* known = scheduler.lease(id);
 	if (!known)
-		co_return "lease " + std::to_string(id) + " has ended";
+		co_return has_ended(id);
 	const Lease lease = *known;
-	const auto guest = all_guests.find(lease.worker);
-	const std::string name = guest == all_guests.end() ? lease.worker : guest->second.hello.name;
+	const std::string name = name_of(lease.worker);
 	say("job " + std::to_string(lease.job) + ", " + place(job(lease.job).row.spec, lease.strip) + " failed on " + name + ": " +
 		failure.line);
 	Ledger::Work work = [=](Database& db) {
@@ -193,7 +198,7 @@ Awaitable<std::string> Farm::give_back(LeaseId id) {
 	const bool known = scheduler.give_back(id);
 	note([id](Database& db) { rows::end_lease(db, id); });
 	wake(1);
-	co_return known ? "" : "lease " + std::to_string(id) + " has ended";
+	co_return known ? "" : has_ended(id);
 }
 
 } // namespace farm

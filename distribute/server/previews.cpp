@@ -12,11 +12,9 @@ std::vector<Previews::Source> Previews::sources(const Job& job, int index) const
 	const JobSpec& spec = job.row.spec;
 	const int per = spec.strips_per_frame();
 	std::vector<Source> list;
-	for (int i = 0; i < per; ++i)
-		if (const auto file = farm.settled_strip(job.row.id, index * per + i)) {
-			const int row = i * spec.strip_rows;
-			list.push_back({*file, row, std::min(spec.strip_rows, spec.height - row)});
-		}
+	for (int s = index * per; s < (index + 1) * per; ++s)
+		if (const auto file = farm.settled_strip(job.row.id, s))
+			list.push_back({*file, spec.row_of(s), spec.rows_of(s)});
 	// Its strips go when the job is over; the frame stays.
 	if (list.empty() && job.stitched[static_cast<size_t>(index)])
 		list.push_back({farm.files().frame(job.row.id, spec.picture(spec.frame(index))), 0, spec.height});

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "distribute/common/error.h"
 #include "distribute/common/hash.h"
+#include "distribute/stitch/libpng.h"
 #include "distribute/stitch/picture.h"
 #include "distribute/stitch/png_join.h"
 
-#include <png.h>
-
 #include <algorithm>
-#include <cstdio>
-#include <memory>
 #include <utility>
 
 namespace farm::png {
@@ -16,20 +12,6 @@ namespace {
 
 using Path = std::filesystem::path;
 using Row = std::vector<png_byte>;
-
-// libpng lets an error function leave by an exception (libpng-manual, "Error handling").
-[[noreturn]] void fail(png_structp png, png_const_charp message) {
-	const std::string& name = *static_cast<const std::string*>(png_get_error_ptr(png));
-	if (std::string_view(message) == "Write Error") // the system's own reason is better
-		throw system_error("cannot write " + name);
-	throw Error(name + ": " + message);
-}
-void hush(png_structp, png_const_charp) {}
-
-struct Closer {
-	void operator()(std::FILE* f) const { std::fclose(f); }
-};
-using File = std::unique_ptr<std::FILE, Closer>;
 
 class Reader {
 public:

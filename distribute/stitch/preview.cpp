@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "distribute/stitch/preview.h"
 
-#include "distribute/common/error.h"
+#include "distribute/stitch/libpng.h"
 
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
-#include <png.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <memory>
 
 namespace farm {
 
@@ -66,11 +63,6 @@ namespace {
 
 Error other_size(const Path& picture) { return Error(picture.string() + " has another size than it should"); }
 
-[[noreturn]] void fail(png_structp png, png_const_charp message) {
-	throw Error(*static_cast<const std::string*>(png_get_error_ptr(png)) + ": " + message);
-}
-void hush(png_structp, png_const_charp) {}
-
 /// The light of each 16-bit value, from 0 to 1: of a PNG's gAMA (100,000 times the exponent), or sRGB if that is 0. libpng's own
 /// tables take sRGB for a power law, and make dark skies black.
 std::vector<float> linear(png_fixed_point gamma) {
@@ -87,12 +79,12 @@ std::vector<float> linear(png_fixed_point gamma) {
 
 void add_png(PreviewRows& to, const Path& picture, int width, int rows) {
 	const std::string name = picture.string();
-	const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(name.c_str(), "rb"), std::fclose);
+	const png::File file(std::fopen(name.c_str(), "rb"));
 	if (!file)
 		throw system_error("cannot read " + name);
 	struct Reading {
 		explicit Reading(const std::string& file_name)
-			: png(png_create_read_struct(PNG_LIBPNG_VER_STRING, const_cast<std::string*>(&file_name), fail, hush)),
+			: png(png_create_read_struct(PNG_LIBPNG_VER_STRING, const_cast<std::string*>(&file_name), png::fail, png::hush)),
 			  info(png_create_info_struct(png)) {}
 		~Reading() { png_destroy_read_struct(&png, &info, nullptr); }
 		png_structp png;

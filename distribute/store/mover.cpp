@@ -13,15 +13,6 @@ namespace {
 
 constexpr size_t most = 256; ///< files open at a time
 
-/// Empty, or why not.
-std::string sync_folder(const fs::path& folder) {
-	const int d = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-	const std::string error = d < 0 || ::fsync(d) != 0 ? system_error("cannot sync " + folder.string()).what() : "";
-	if (d >= 0)
-		::close(d);
-	return error;
-}
-
 } // namespace
 
 Mover::Mover() : thread([this] { serve(); }) {}
@@ -77,8 +68,13 @@ void Mover::move_all(std::vector<Entry>& batch) {
 		if (e.descriptor >= 0)
 			::close(e.descriptor);
 	}
-	for (auto& [folder, error] : folders)
-		error = sync_folder(folder);
+	for (auto& [folder, error] : folders) {
+		try {
+			sync_folder(folder);
+		} catch (const Error& e) {
+			error = e.what();
+		}
+	}
 	for (Entry& e : batch)
 		if (e.error.empty())
 			e.error = folders[e.to.parent_path()];

@@ -64,7 +64,7 @@ private:
 	WorkerSettings settings;
 	Hello self;
 	Cache cache;
-	std::atomic<bool> stopping = false, aborting = false, unwell = false;
+	std::atomic<bool> stopping = false, unwell = false;
 	std::atomic<double> beat_every = 1;
 	std::mutex mutex;
 	std::condition_variable wake;
