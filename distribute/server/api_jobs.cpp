@@ -14,9 +14,15 @@ void add_job_routes(Router& router, Farm& farm) {
 			const auto bundle = farm.files().bundle(spec.bundle);
 			if (!bundle)
 				throw HttpError(409, "the server does not have bundle " + spec.bundle);
-			for (const auto& file : bundle->files)
+			for (const auto& file : bundle->files) {
 				if (!farm.files().has_file(file.sha256))
 					throw HttpError(409, "the server does not have the bundle's file " + file.name);
+				// The bundle's limits are checked by what its list says.
+				if (const auto size = fs::file_size(farm.files().file(file.sha256));
+					size != static_cast<std::uintmax_t>(file.bytes))
+					throw HttpError(409, "the bundle's file " + file.name + " has " + std::to_string(size) +
+											 " bytes, and its list says " + std::to_string(file.bytes));
+			}
 			const JobId id = co_await farm.submit(std::move(spec));
 			co_return answer({{"job", id}}, 201);
 		},

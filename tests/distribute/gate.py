@@ -10,6 +10,7 @@ import socket
 import time
 import urllib.parse
 
+import hand
 from farm import WORK, Server, new_token, wait
 
 TOKEN = new_token()
@@ -185,4 +186,11 @@ for pieces in ((), (b"GET /health HT",), (b"GET /health HTTP/1.1\r\nHost: x\r\n"
         seconds = time.monotonic() - start
     assert 1.5 < seconds < 30, (pieces, seconds)
 assert server.ask("/health")[0] == 200 and server.process.poll() is None
+# A list that says less than the files have would get round the limits: no job is made of it.
+for size in (0, len(hand.SCENE) - 1, len(hand.SCENE) + 1):
+    false = dict(hand.BUNDLE, files=[dict(hand.BUNDLE["files"][0], bytes=size)])
+    false_id = server.ask("/v1/bundles", false, token=TOKEN)[1]["bundle"]
+    assert server.ask("/v1/files/" + hand.sha(hand.SCENE), raw=hand.SCENE, method="PUT", token=TOKEN)[0] == 201
+    status, answer = server.ask("/v1/jobs", dict(hand.JOB, bundle=false_id), token=TOKEN)
+    assert status == 409 and "scene.pov has 11 bytes, and its list says %d" % size in answer["error"], (size, status, answer)
 print("%d routes; tokens, bundles, bodies and headers refused" % len(routes))
