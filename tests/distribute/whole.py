@@ -42,10 +42,13 @@ compare("isosurface", HEAD % "" + CHANCE + "isosurface { function { x*x + y*y + 
         "pigment { Yellow } }\n", said="rendered whole: an isosurface")
 compare("half", HEAD % "" + CHANCE, ["+FE"], options=["--strips", "3"], exr=True)
 compare("float", HEAD % "" + CHANCE, ["+FE", "Bits_Per_Color=32"], options=["--strips", "3"], exr=True)
+# Strips are parsed one after the other, and by many.
+compare("moment", HEAD % "" + "#declare S = seed(mod(now, 1)*86400*1000);\nlight_source { <10, 20, -20> White }\nplane { y, -3 pigment { rgb <rand(S), rand(S), rand(S)> } }\n",
+        options=["--strips", "7"])
 # "radiosity" in a comment and in a string cuts all the same; a picture from above the scene's folder comes along.
 os.rename(WORK + "/reference/dither.png", WORK + "/project/pictures/d.png")
 compare("above", HEAD % "/* radiosity { } */" + CHANCE + '// radiosity {\n#declare S = "radiosity { }";\nbox { <-5, -2, 3>, <-3, 0, 4> pigment { image_map { png "../pictures/d.png" } } }\n',
         options=["--strips", "3"])
 bad = bhfarm("render", "above.pov", "--strips", "41", "+W60", "+H40", cwd=folder, good=False)
 assert bad.returncode == 1 and "a frame has 40 rows" in bad.stderr
-print("8 pictures, cut or not, as from one povray")
+print("9 pictures, cut or not, as from one povray")

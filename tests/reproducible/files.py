@@ -129,7 +129,17 @@ def animation():
 	expect(together[0] != together[1], "nothing moves")
 
 
+def moment():
+	"""Strips are parsed at different moments: `now` is none of them, but in stock's way of rendering it goes on."""
+	folder = Folder(CAMERA % "" + BALLS + '#error concat("now is ", str(now, 0, 6))')
+	said = "now is 0.000000"
+	for words in ("", "Reproducible=off"):
+		code, text = folder.run(words)
+		expect(code != 0 and "now is" in text and (said in " ".join(text.split())) == (words == ""), words, "says", text[-300:])
+
+
 radiosity()
 dither()
 animation()
+moment()
 sys.exit(povray.failures != 0)
