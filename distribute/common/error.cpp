@@ -36,9 +36,12 @@ void say(const std::string& line) {
 }
 
 std::string for_terminal(std::string text, bool lines) {
-	for (char& c : text)
-		if ((static_cast<unsigned char>(c) < ' ' && !(lines && (c == '\n' || c == '\t'))) || c == 127)
-			c = ' ';
+	const auto at = [&](size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0; };
+	for (size_t i = 0; i < text.size(); ++i)
+		if (at(i) == 0xc2 && at(i + 1) >= 0x80 && at(i + 1) < 0xa0) // in UTF-8, what 27 and a letter mean too
+			text[i] = text[i + 1] = ' ';
+		else if ((at(i) < ' ' && !(lines && (text[i] == '\n' || text[i] == '\t'))) || at(i) == 127)
+			text[i] = ' ';
 	return text;
 }
 

@@ -29,8 +29,9 @@ void remove_job(Database& db, JobId job) {
 }
 
 void add_lease(Database& db, const Lease& lease) {
-	Statement s(db, "INSERT INTO lease(id, job, strip, worker) VALUES(?, ?, ?, ?)");
-	(s << lease.id << lease.job << lease.strip << lease.worker).run();
+	// Of a job that was removed a moment ago there is nothing to note, which is no trouble.
+	Statement s(db, "INSERT INTO lease(id, job, strip, worker) SELECT ?, id, ?, ? FROM job WHERE id = ?");
+	(s << lease.id << lease.strip << lease.worker << lease.job).run();
 }
 
 bool end_lease(Database& db, LeaseId lease) {
@@ -77,9 +78,9 @@ void forget_aside(Database& db, double before) {
 }
 
 void set_frame(Database& db, JobId job, int frame, bool stitched) {
-	Statement s(
-		db, stitched ? "INSERT OR IGNORE INTO frame(job, frame) VALUES(?, ?)" : "DELETE FROM frame WHERE job = ? AND frame = ?");
-	(s << job << frame).run();
+	Statement s(db, stitched ? "INSERT OR IGNORE INTO frame(frame, job) SELECT ?, id FROM job WHERE id = ?"
+							 : "DELETE FROM frame WHERE frame = ? AND job = ?");
+	(s << frame << job).run();
 }
 
 } // namespace farm::rows

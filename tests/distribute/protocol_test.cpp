@@ -230,4 +230,15 @@ TEST(Povray, RowsAsItCountsThem) {
 	EXPECT_EQ(rows(0, 1), "End_Row=1.5 ") << "1 would be all of them";
 }
 
+// A worker's or a scene's words reach a terminal: escapes are 27, and in UTF-8 also 0x80 to 0x9f, of two bytes.
+TEST(Terminal, NothingSteersIt) {
+	EXPECT_EQ(for_terminal("a\x1b[31m\x07\n\x7f"), "a [31m   ");
+	EXPECT_EQ(for_terminal("a\xc2\x9b"
+						   "31m\xc2\x80\xc2\x9f"),
+		"a  31m    ");
+	EXPECT_EQ(for_terminal("\xc3\xbc \xc2\xa0\xc3\x9f \xe2\x9b\x84 \xc2"), "\xc3\xbc \xc2\xa0\xc3\x9f \xe2\x9b\x84 \xc2")
+		<< "letters stay";
+	EXPECT_EQ(for_terminal("a\nb\tc\rd", true), "a\nb\tc d");
+}
+
 } // namespace
