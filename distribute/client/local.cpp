@@ -20,6 +20,8 @@ std::atomic<bool> interrupted = false;
 
 void interrupt(int) { interrupted = true; }
 
+const char* const stopped = "stopped; the same command goes on where it was";
+
 /// Where the state of a command is kept from one time to the next: by the words about the scene and where the pictures go.
 fs::path state_of(const Prepared& p, const fs::path& output) {
 	json all = {p.scene.spec, p.scene.scene.string(), output.string()};
@@ -76,7 +78,7 @@ public:
 	Output(const JobSpec& s, const fs::path& f) : spec(s), folder(f) {}
 
 	void bring(Client& client, const fs::path& spool, const json& job) {
-		if (!job.is_object() || job.value("frames_done", 0) <= static_cast<int>(there.size()))
+		if (job.value("frames_done", 0) <= static_cast<int>(there.size()))
 			return;
 		const std::string number = std::to_string(job.value("id", 0));
 		try {
@@ -122,6 +124,8 @@ int render_command(const Words& words) {
 		"Renders on this machine. After Ctrl-C the same command goes on where it was.",
 		options);
 	const int slots = slots_from(a);
+	for (const int s : {SIGINT, SIGTERM, SIGHUP})
+		std::signal(s, interrupt);
 	Prepared prepared = prepare(a);
 	JobSpec& spec = prepared.scene.spec;
 	const fs::path output =
@@ -146,18 +150,19 @@ int render_command(const Words& words) {
 	std::string url;
 	try {
 		url = farm.start_server(interrupted);
-		farm.start_worker();
-		try_out(prepared, a, slots); // while the worker tries povray
-	} catch (...) {
+		if (!interrupted)
+			farm.start_worker();
+		try_out(prepared, a, slots, &interrupted); // while the worker tries povray
+		if (interrupted)
+			throw Stopped();
+	} catch (const std::exception& e) {
 		farm.stop(true);
 		std::error_code ignored;
 		if (fresh)
 			fs::remove_all(state, ignored);
-		throw;
+		say(!interrupted ? e.what() : fresh ? "stopped before anything was rendered" : stopped);
+		return interrupted ? 130 : 1;
 	}
-	std::signal(SIGINT, interrupt);
-	std::signal(SIGTERM, interrupt);
-	std::signal(SIGHUP, interrupt);
 	spec.client_key = key_of(prepared);
 	Output frames(spec, output);
 	Client client(access_from(url, (state / "token").string(), ""));
@@ -177,7 +182,7 @@ int render_command(const Words& words) {
 	farm.stop(stage == "done");
 	if (stage != "done") {
 		const std::string error = job.value("error", "");
-		say(stage == "failed" ? error : "stopped; the same command goes on where it was");
+		say(stage == "failed" ? error : stopped);
 		return stage == "failed" ? 1 : 130;
 	}
 	const fs::path made = farm.spool() / "jobs" / std::to_string(job.value("id", 0)) / "frames";

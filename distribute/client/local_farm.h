@@ -23,6 +23,8 @@ struct LocalFarmSettings {
 class LocalFarm {
 public:
 	explicit LocalFarm(const LocalFarmSettings& settings) : set(settings) {}
+	~LocalFarm() { stop(false); }
+	LocalFarm(const LocalFarm&) = delete;
 
 	fs::path spool() const { return set.state / "spool"; }
 	/// Where it listens; empty if `interrupted` came first. Throws Error with the server's own last line.

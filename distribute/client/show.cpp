@@ -87,7 +87,7 @@ json follow(Client& client, std::int64_t id, double patience, const std::atomic<
 	using Clock = std::chrono::steady_clock;
 	ProgressLine progress;
 	auto heard = Clock::now();
-	json job;
+	json job = json::object();
 	std::string told;
 	while (!stop) {
 		try {
@@ -110,7 +110,7 @@ json follow(Client& client, std::int64_t id, double patience, const std::atomic<
 				throw;
 		}
 		// The end is not to be missed by much.
-		const double eta = job.is_object() && job["eta"].is_number() ? job["eta"].get<double>() : 1;
+		const double eta = job["eta"].is_number() ? job["eta"].get<double>() : 1;
 		std::this_thread::sleep_for(std::chrono::duration<double>(std::clamp(eta / 5, 0.03, 0.2)));
 		if (each_time)
 			each_time(job);

@@ -61,9 +61,9 @@ Prepared prepare(const Arguments& arguments) {
 	return p;
 }
 
-void try_out(Prepared& p, const Arguments& arguments, int slots) {
+void try_out(Prepared& p, const Arguments& arguments, int slots, const std::atomic<bool>* stop) {
 	JobSpec& spec = p.scene.spec;
-	p.files = gather(p.scene, {p.povray, p.sandbox}, arguments.all("--assets"));
+	p.files = gather(p.scene, {p.povray, p.sandbox, stop}, arguments.all("--assets"));
 	spec.strip_rows = strip_rows(spec, p.files, asked_strips(arguments, spec), slots);
 	spec.check();
 	if (!spec.whole_because.empty())

@@ -22,8 +22,9 @@ struct Prepared {
 
 /// What the words and the INI files say, and says what is left out. Throws Error.
 Prepared prepare(const Arguments& arguments);
-/// Parses the scene, gathers its files, and cuts its frames up for about so many slots. Throws Error.
-void try_out(Prepared& prepared, const Arguments& arguments, int slots);
+/// Parses the scene, gathers its files, and cuts its frames up for about so many slots. Throws Error; Stopped once `stop` is
+/// true.
+void try_out(Prepared& prepared, const Arguments& arguments, int slots, const std::atomic<bool>* stop = nullptr);
 
 /// Sends what the server lacks, then the job; returns its number.
 std::int64_t send_job(Client& client, const Prepared& prepared);

@@ -16,6 +16,11 @@ struct Error : std::runtime_error {
 	int number; ///< errno where the system said no; else 0
 };
 
+/// What was going on was given up because somebody said so: a signal, mostly.
+struct Stopped : Error {
+	Stopped() : Error("stopped") {}
+};
+
 /// Unix's word for errno, with what was being done: "cannot write x: No space left on device".
 Error system_error(const std::string& what);
 

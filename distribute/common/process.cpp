@@ -130,10 +130,11 @@ std::string host_name() {
 	return name;
 }
 
-int run(const Command& command) {
+int run(const Command& command, const std::atomic<bool>* stop) {
 	Process process(command);
-	while (!process.over(-1)) {
-	}
+	while (!process.over(stop ? 0.05 : -1))
+		if (stop && *stop)
+			throw Stopped();
 	return process.code();
 }
 

@@ -3,6 +3,7 @@
 #ifndef FARM_PROCESS_H
 #define FARM_PROCESS_H
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -48,8 +49,8 @@ private:
 /// This machine's, or nothing.
 std::string host_name();
 
-/// Runs to the end and returns the exit code.
-int run(const Command& command);
+/// Runs to the end and returns the exit code. Once `stop` is true, it is killed and Stopped thrown.
+int run(const Command& command, const std::atomic<bool>* stop = nullptr);
 
 } // namespace farm
 #endif

@@ -107,11 +107,11 @@ bool did_not_start(const std::string& log) {
 	return log.find("Timed out waiting for worker thread startup") != std::string::npos;
 }
 
-std::pair<int, std::string> run_povray(const Command& command) {
+std::pair<int, std::string> run_povray(const Command& command, const std::atomic<bool>* stop) {
 	for (int tries = 0;; ++tries) {
 		std::error_code ignored;
 		fs::remove(command.log, ignored);
-		const int code = run(command);
+		const int code = run(command, stop);
 		const std::string log = fs::exists(command.log) ? read_file(command.log) : "";
 		if (code == 0 || !did_not_start(log) || tries == 5)
 			return {code, log};

@@ -32,8 +32,9 @@ std::string error_line(const std::string& log, int code, const std::filesystem::
 /// again.
 bool did_not_start(const std::string& log);
 
-/// Runs such a command to its end, again where it did not start; its exit code and what it printed to its log.
-std::pair<int, std::string> run_povray(const Command& command);
+/// Runs such a command to its end, again where it did not start; its exit code and what it printed to its log. Throws Stopped
+/// once `stop` is true.
+std::pair<int, std::string> run_povray(const Command& command, const std::atomic<bool>* stop = nullptr);
 
 inline const Option povray_option{"--povray", "FILE", "the povray to run; default the one beside this program", ""};
 /// The program beside ours, or what --povray says; throws Error if there is none.

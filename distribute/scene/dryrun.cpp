@@ -76,12 +76,14 @@ std::string one_pixel(const JobSpec& spec, int frame) {
 	return ini;
 }
 
-/// How long it takes beyond parsing; stopped after `patience` seconds of that.
-double timed(const Command& command, double parse_seconds, double patience) {
+/// How long it takes beyond parsing; ended after `patience` seconds of that.
+double timed(const Command& command, const Trier& trier, double parse_seconds, double patience) {
 	const auto start = Clock::now();
 	Process process(command);
-	if (!process.over(parse_seconds + patience))
-		process.signal(SIGKILL);
+	while (!process.over(0.05) && since(start) < parse_seconds + patience)
+		if (trier.stop && *trier.stop)
+			throw Stopped();
+	process.signal(SIGKILL);
 	process.over(-1);
 	return std::max(0.0, since(start) - parse_seconds);
 }
@@ -95,7 +97,7 @@ Parsed parse(const SettledScene& scene, int frame, const Trier& trier) {
 	const Command command =
 		scene_command(scene, ini, trier, scratch.path(), {{"LD_PRELOAD", reads_library()}, {"BHFARM_READS", list}});
 	const auto start = Clock::now();
-	const auto [code, log] = run_povray(command);
+	const auto [code, log] = run_povray(command, trier.stop);
 	Parsed parsed;
 	parsed.seconds = since(start);
 	if (code != 0) {
@@ -121,7 +123,7 @@ Parsed parse(const SettledScene& scene, int frame, const Trier& trier) {
 
 double start_time(const SettledScene& scene, int frame, const Trier& trier, double parse_seconds, double patience) {
 	const ScratchFolder scratch(fs::temp_directory_path());
-	return timed(scene_command(scene, one_pixel(scene.spec, frame), trier, scratch.path()), parse_seconds, patience);
+	return timed(scene_command(scene, one_pixel(scene.spec, frame), trier, scratch.path()), trier, parse_seconds, patience);
 }
 
 double frame_time(const SettledScene& scene, int frame, const Trier& trier, double parse_seconds, double patience) {
@@ -131,7 +133,8 @@ double frame_time(const SettledScene& scene, int frame, const Trier& trier, doub
 	small.spec.width = std::max(1, scene.spec.width / smaller);
 	small.spec.height = std::max(1, scene.spec.height / smaller);
 	const double pixels = double(scene.spec.width) * scene.spec.height / (double(small.spec.width) * small.spec.height);
-	return timed(scene_command(small, povray_ini(small.spec, frame), trier, scratch.path()), parse_seconds, patience) * pixels;
+	return timed(scene_command(small, povray_ini(small.spec, frame), trier, scratch.path()), trier, parse_seconds, patience) *
+		   pixels;
 }
 
 } // namespace farm

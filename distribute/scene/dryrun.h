@@ -6,6 +6,7 @@
 #include "distribute/sandbox/sandbox.h"
 #include "distribute/scene/settle.h"
 
+#include <atomic>
 #include <set>
 
 namespace farm {
@@ -22,6 +23,7 @@ struct Parsed {
 struct Trier {
 	std::filesystem::path povray;
 	Sandbox sandbox;
+	const std::atomic<bool>* stop = nullptr; ///< once it is true, what runs is ended, and Stopped thrown
 };
 
 /// Parses one frame and renders one pixel of it without its textures' cost. Throws Error with POV-Ray's own words if it does not

@@ -26,6 +26,13 @@ const std::vector<Option> own_options = {
 };
 
 int work(const Arguments& arguments) {
+	// Signals come to one thread, which tells the others. Until it is there they wait: what is tried out leaves nothing behind.
+	sigset_t signals;
+	sigemptyset(&signals);
+	for (const int s : {SIGINT, SIGTERM, SIGHUP})
+		sigaddset(&signals, s);
+	pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+	::signal(SIGPIPE, SIG_IGN);
 	WorkerSettings settings;
 	settings.server = access_from(arguments);
 	settings.name = arguments.get("--name").empty() ? host_name() : arguments.get("--name");
@@ -44,13 +51,6 @@ int work(const Arguments& arguments) {
 	if (!arguments.has("--no-sandbox"))
 		settings.renderer.sandbox = Sandbox(settings.renderer.povray);
 
-	// Signals come to one thread, which tells the others.
-	sigset_t signals;
-	sigemptyset(&signals);
-	for (const int s : {SIGINT, SIGTERM, SIGHUP})
-		sigaddset(&signals, s);
-	pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-	::signal(SIGPIPE, SIG_IGN);
 	Worker worker(settings);
 	std::thread([&worker, signals] {
 		for (int s = 0, count = 0; sigwait(&signals, &s) == 0;)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: AGPL-3.0-or-later
 """bhfarm render ended at moments of chance (Ctrl-C, a hangup, kill -9), also while it stitches and encodes, and the same command again until it is done: the pixels of one
 povray, and nothing left over. Frames are there as they are finished. A seed may be given."""
+import glob
 import os
 import random
 import shutil
@@ -22,6 +23,8 @@ with open(WORK + "/path/ffmpeg", "w") as f: # encoding takes long enough to be h
     f.write("#!/bin/bash\n[ \"$1\" = -version ] || { echo >>%s/encoding; sleep 1; }\nexec %s \"$@\"\n" % (WORK, shutil.which("ffmpeg")))
 os.chmod(WORK + "/path/ffmpeg", 0o755)
 ENV["PATH"] = WORK + "/path:" + ENV["PATH"]
+ENV["TMPDIR"] = WORK + "/tmp"
+os.mkdir(ENV["TMPDIR"])
 state = ENV["HOME"] + "/.local/state/bhfarm/render"
 words = ("render", "film.ini", "--slots", "2", "--strips", "4")
 names = ["film%d.png" % n for n in range(1, 5)]
@@ -38,6 +41,22 @@ def whole():
         if os.path.exists(folder + "/" + name):
             same(folder + "/" + name, WORK + "/reference/" + name)
 
+
+# Before the first strip: what it had begun is gone, and it says so in a line.
+moments = {"at once": lambda: True, "its fence is tried": lambda: os.listdir(ENV["TMPDIR"]), "it has a folder": lambda: os.path.isdir(state) and os.listdir(state),
+           "its server listens": lambda: glob.glob(state + "/*/spool/url"), "a scene is tried out": lambda: glob.glob(ENV["TMPDIR"] + "/*/here"),
+           "the job is there": lambda: glob.glob(state + "/*/spool/jobs/*")}
+for what, here in moments.items():
+    process = subprocess.Popen([BIN + "/bhfarm", *words], cwd=folder, env=ENV, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    while not here() and process.poll() is None:
+        time.sleep(0.002)
+    process.send_signal(signal.SIGINT)
+    said = process.communicate(timeout=60)[1]
+    begun = "goes on where it was" in said
+    assert process.returncode == (130 if said else -signal.SIGINT) and (begun or said in ("", "bhfarm: stopped before anything was rendered\n")), (what, process.returncode, said)
+    assert os.listdir(ENV["TMPDIR"]) == [], (what, os.listdir(ENV["TMPDIR"]))
+    assert begun or not os.path.isdir(state) or os.listdir(state) == [], (what, said, os.listdir(state))
+    shutil.rmtree(state, ignore_errors=True)
 
 for round in range(7):
     process = subprocess.Popen([BIN + "/bhfarm", *words], cwd=folder, env=ENV, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
