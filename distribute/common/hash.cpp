@@ -26,26 +26,26 @@ std::string hex(const unsigned char* bytes, size_t count) {
 	return text;
 }
 
-class Digest {
-public:
-	Digest() : context(EVP_MD_CTX_new(), EVP_MD_CTX_free) { EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr); }
-	void add(const void* data, size_t size) { EVP_DigestUpdate(context.get(), data, size); }
-	std::string name() {
-		unsigned char bytes[EVP_MAX_MD_SIZE];
-		unsigned count = 0;
-		EVP_DigestFinal_ex(context.get(), bytes, &count);
-		return hex(bytes, count);
-	}
-
-private:
-	std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context;
-};
+EVP_MD_CTX* at(const std::shared_ptr<void>& context) { return static_cast<EVP_MD_CTX*>(context.get()); }
 
 } // namespace
 
+Sha256::Sha256() : context(EVP_MD_CTX_new(), [](void* c) { EVP_MD_CTX_free(static_cast<EVP_MD_CTX*>(c)); }) {
+	EVP_DigestInit_ex(at(context), EVP_sha256(), nullptr);
+}
+
+void Sha256::add(std::string_view data) { EVP_DigestUpdate(at(context), data.data(), data.size()); }
+
+std::string Sha256::name() {
+	unsigned char bytes[EVP_MAX_MD_SIZE];
+	unsigned count = 0;
+	EVP_DigestFinal_ex(at(context), bytes, &count);
+	return hex(bytes, count);
+}
+
 std::string sha256(std::string_view data) {
-	Digest digest;
-	digest.add(data.data(), data.size());
+	Sha256 digest;
+	digest.add(data);
 	return digest.name();
 }
 
@@ -53,10 +53,10 @@ std::string sha256_file(const std::filesystem::path& file) {
 	std::ifstream in(file, std::ios::binary);
 	if (!in)
 		throw system_error("cannot read " + file.string());
-	Digest digest;
+	Sha256 digest;
 	std::vector<char> buffer(1 << 16);
 	while (in.read(buffer.data(), static_cast<std::streamsize>(buffer.size())) || in.gcount() > 0)
-		digest.add(buffer.data(), static_cast<size_t>(in.gcount()));
+		digest.add({buffer.data(), static_cast<size_t>(in.gcount())});
 	if (in.bad())
 		throw system_error("cannot read " + file.string());
 	return digest.name();

@@ -4,10 +4,23 @@
 #define FARM_HASH_H
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 
 namespace farm {
+
+/// Of data that comes piece by piece.
+class Sha256 {
+public:
+	Sha256();
+	void add(std::string_view data);
+	/// 64 lower-case hexadecimal digits. Nothing may be added after that.
+	std::string name();
+
+private:
+	std::shared_ptr<void> context;
+};
 
 /// 64 lower-case hexadecimal digits.
 std::string sha256(std::string_view data);

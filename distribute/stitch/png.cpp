@@ -93,9 +93,11 @@ private:
 	png_infop info;
 };
 
-std::string name_of(const Kind& kind, const std::string& pixels) {
-	return sha256("png " + std::to_string(kind.colours) + " " + std::to_string(kind.depth) + " " + std::to_string(kind.gamma) +
-				  "\n" + pixels);
+/// Pixels are named with what they mean.
+Sha256 name_of(const Kind& kind) {
+	Sha256 name;
+	name.add("png " + std::to_string(kind.colours) + " " + std::to_string(kind.depth) + " " + std::to_string(kind.gamma) + "\n");
+	return name;
 }
 
 } // namespace
@@ -129,16 +131,18 @@ std::string check_strip(const JobSpec& spec, int rows, const Path& strip) {
 		Kind kind;
 		const std::string pixels = read_joinable(strip, kind);
 		fits(kind, pixels.size() / kind.row_bytes());
-		return name_of(kind, pixels);
+		Sha256 name = name_of(kind);
+		name.add(pixels);
+		return name.name();
 	}
-	Row pixels;
-	std::string all;
+	Row pixels; // one at a time: a whole frame may have gigabytes
+	Sha256 name = name_of(in.kind);
 	for (int i = 0; i < rows; ++i) {
 		in.next(pixels);
-		all.append(reinterpret_cast<const char*>(pixels.data()), pixels.size());
+		name.add({reinterpret_cast<const char*>(pixels.data()), pixels.size()});
 	}
 	in.end();
-	return name_of(in.kind, all);
+	return name.name();
 }
 
 std::string kind_of(const Path& strip) {
