@@ -27,12 +27,16 @@ std::string end_of(const fs::path& log) {
 }
 
 /// The picture that povray wrote: it adds the frame's number to the name, so a folder of its own tells. Links are not followed,
-/// whoever made them.
+/// whoever made them. Throws Error if the scene has written one too: which comes first hangs on the machine.
 fs::path picture_in(const fs::path& folder, const std::string& suffix) {
+	fs::path picture;
 	for (const auto& entry : fs::directory_iterator(folder))
-		if (entry.path().extension() == suffix && entry.symlink_status().type() == fs::file_type::regular)
-			return entry.path();
-	return {};
+		if (entry.path().extension() == suffix && entry.symlink_status().type() == fs::file_type::regular) {
+			if (!picture.empty())
+				throw Error("the scene writes pictures of its own to where the strip's goes");
+			picture = entry.path();
+		}
+	return picture;
 }
 
 } // namespace
