@@ -25,7 +25,7 @@ const std::vector<Option> own_options = {
 	povray_option,
 };
 
-int work(const Arguments& arguments) {
+void work(const Arguments& arguments) {
 	// Signals come to one thread, which tells the others. Until it is there they wait: what is tried out leaves nothing behind.
 	sigset_t signals;
 	sigemptyset(&signals);
@@ -57,13 +57,12 @@ int work(const Arguments& arguments) {
 			worker.stop(s == SIGTERM && ++count == 1);
 	}).detach();
 	worker.run();
-	std::_Exit(0); // the signals' thread still looks at what would be torn down
 }
 
 } // namespace
 
 int main(int argc, char** argv) {
-	return run_program("bhfarm-worker", true, [&] {
+	return run_program("bhfarm-worker", true, [&]() -> int {
 		const auto options = access_options + own_options + limit_options;
 		const Arguments arguments({argv + 1, argv + argc}, options);
 		help_if_asked(arguments,
@@ -71,6 +70,7 @@ int main(int argc, char** argv) {
 			"Renders strips for a bhfarm-server. SIGTERM: finishes them, SIGINT: gives them back, then leaves.",
 			options);
 		no_other_words(arguments);
-		return work(arguments);
+		work(arguments); // and its scratch folder is gone
+		std::_Exit(0);   // the signals' thread still looks at what would be torn down
 	});
 }
