@@ -83,6 +83,8 @@ TEST(Cuts, AreSaneAtTheEdges) {
 	EXPECT_EQ(cut({1e5, 0.01, 0, 1, 8, 1080}), 32);
 	EXPECT_EQ(cut({1, 0.01, 0, 1, 8, 1}), 1);
 	EXPECT_EQ(cut({0, 0, 0, 1, 8, 1080}), 1080);
+	// A poster of 16384 rows: its strips are written and read as a whole one.
+	EXPECT_GE(cut({600, 0.1, 0, 1, 4, 16384}), 16384 / 10);
 	// As asked for.
 	EXPECT_EQ(cut({1, 1, 0, 1, 8, 1080}, 1), 1080);
 	EXPECT_EQ(cut({1, 1, 0, 1, 8, 1080}, 3), 384);
