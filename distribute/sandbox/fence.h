@@ -11,11 +11,18 @@
 
 namespace farm {
 
-/// The part of the file system that is seen, each thing at its own absolute path.
+/// A file or folder, and where it is seen, an absolute path; where it is if nothing else is said.
+struct Seen {
+	std::filesystem::path from, at;
+	Seen(const std::filesystem::path& place) : from(place), at(place) {}
+	Seen(const std::filesystem::path& f, const std::filesystem::path& a) : from(f), at(a) {}
+};
+
+/// The part of the file system that is seen.
 struct Room {
-	std::vector<std::filesystem::path> reads;  ///< files and folders to read from
-	std::vector<std::filesystem::path> writes; ///< folders to write to as well; they may lie within those above
-	bool everything = false;                   ///< the whole file system may be read
+	std::vector<Seen> reads;  ///< files and folders to read from
+	std::vector<Seen> writes; ///< folders to write to as well; they may lie within those above
+	bool everything = false;  ///< the whole file system may be read; each thing is then where it is
 };
 
 /// The descriptor on which bubblewrap finds the filter of system calls.

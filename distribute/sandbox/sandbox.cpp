@@ -13,6 +13,9 @@
 namespace farm {
 namespace {
 
+// A scene can ask whether a file exists: where the program lies here is not for its pictures to show.
+const fs::path program_place = "/program", libraries_place = "/libraries";
+
 fs::path find_bubblewrap() {
 	const char* path = std::getenv("PATH");
 	std::istringstream folders(path ? path : "/usr/local/bin:/usr/bin:/bin");
@@ -62,24 +65,21 @@ std::set<fs::path> libraries_of(const fs::path& program) {
 
 Sandbox::Sandbox(const fs::path& program) : bubblewrap(find_bubblewrap()) {
 	std::set<fs::path> folders;
-	program_room.reads.push_back(program);
-	for (const auto& library : libraries_of(program)) {
-		folders.insert(library.parent_path());
+	program_room.reads.emplace_back(program, program_place);
+	for (const auto& library : libraries_of(program))
 		// The system's folders of libraries have no secrets, and a few mounts cost less than fifty.
-		if (!within(library, "/usr") && !within(library, "/lib") && !within(library, "/lib64"))
-			program_room.reads.push_back(library);
-	}
+		if (within(library, "/usr") || within(library, "/lib") || within(library, "/lib64"))
+			folders.insert(library.parent_path());
+		else
+			program_room.reads.emplace_back(library, libraries_place / library.filename());
+	library_folders = libraries_place;
 	for (const auto& folder : folders) {
-		if (!library_folders.empty())
-			library_folders += ':';
-		library_folders += folder.string();
-		if (within(folder, "/usr") || within(folder, "/lib") || within(folder, "/lib64")) {
-			bool inside = false;
-			for (const auto& other : folders)
-				inside = inside || (other != folder && within(folder, other));
-			if (!inside)
-				program_room.reads.push_back(folder);
-		}
+		library_folders += ":" + folder.string();
+		bool inside = false;
+		for (const auto& other : folders)
+			inside = inside || (other != folder && within(folder, other));
+		if (!inside)
+			program_room.reads.emplace_back(folder);
 	}
 	filter = std::shared_ptr<const int>(new int(make_filter()), [](const int* d) {
 		::close(*d);
@@ -104,6 +104,7 @@ Command Sandbox::fenced(const Command& command, Room room, const Limits& limits)
 	if (!room.everything) {
 		room.reads.insert(room.reads.end(), program_room.reads.begin(), program_room.reads.end());
 		whole.environment["LD_LIBRARY_PATH"] = library_folders;
+		whole.words.at(0) = program_place;
 	}
 	whole.words = fence_words(bubblewrap, room, whole);
 	// What is said of the inside is not for bubblewrap itself.

@@ -18,10 +18,12 @@ public:
 	/// the program's libraries cannot be told.
 	explicit Sandbox(const std::filesystem::path& program);
 
-	/// The command behind the fence. What it needs to read is in the room; the program and its libraries come by themselves. Only
-	/// `command.environment` gets in.
+	/// The command, one of this program's, behind the fence. What it needs to read is in the room; the program and its libraries
+	/// come by themselves. Only `command.environment` gets in.
 	Command fenced(const Command& command, Room room, const Limits& limits = {}) const;
 	bool fences() const { return filter != nullptr; }
+	/// Something of a room, at a place that is the same on each machine; where it is, if there is no fence.
+	Seen placed(const std::filesystem::path& from, const std::filesystem::path& at) const { return {from, fences() ? at : from}; }
 
 private:
 	std::filesystem::path bubblewrap;

@@ -111,8 +111,8 @@ struct Changes {
 	std::vector<Lease> ended; ///< leases taken away: expired, or no longer needed
 	std::vector<StripRef> settled;
 	std::vector<StripRef> reopened;
-	std::vector<StripRef> given_up;               ///< the job failed of this
-	std::map<JobId, std::vector<WorkerId>> split; ///< of those, where the answers differed: whose
+	std::vector<StripRef> given_up;            ///< the job failed of this
+	std::map<JobId, std::set<WorkerId>> split; ///< of those, where the answers differed: whose
 	std::vector<JobId> done;
 	std::vector<std::pair<WorkerId, std::string>> aside; ///< and why
 	std::vector<WorkerId> gone;                          ///< not heard of for a lease's time

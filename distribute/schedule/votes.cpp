@@ -214,7 +214,7 @@ void Scheduler::tick(Time now, Changes& changes) {
 			settle(j, strip, v.worker, v.hash, now, changes);
 		for (const int strip : split) {
 			for (const Vote& v : j.trouble[strip].votes)
-				changes.split[job_id].push_back(v.worker);
+				changes.split[job_id].insert(v.worker);
 			give_up(j, strip, changes);
 		}
 		doubt(j, true, now, changes);

@@ -3,6 +3,7 @@
 
 #include "distribute/common/error.h"
 #include "distribute/common/files.h"
+#include "distribute/common/hash.h"
 #include "distribute/render/povray.h"
 
 #include <algorithm>
@@ -27,36 +28,37 @@ std::string end_of(const fs::path& log) {
 }
 
 /// The picture that povray wrote: it adds the frame's number to the name, so a folder of its own tells. Links are not followed,
-/// whoever made them. Throws Error if the scene has written one too: which comes first hangs on the machine.
+/// whoever made them.
 fs::path picture_in(const fs::path& folder, const std::string& suffix) {
-	fs::path picture;
 	for (const auto& entry : fs::directory_iterator(folder))
-		if (entry.path().extension() == suffix && entry.symlink_status().type() == fs::file_type::regular) {
-			if (!picture.empty())
-				throw Error("the scene writes pictures of its own to where the strip's goes");
-			picture = entry.path();
-		}
-	return picture;
+		if (entry.path().extension() == suffix && entry.symlink_status().type() == fs::file_type::regular)
+			return entry.path();
+	return {};
 }
 
 } // namespace
 
 Rendered render_strip(const Renderer& renderer, const Task& task, const fs::path& root, const fs::path& folder,
 	const fs::path& scratch, const std::function<bool()>& give_up) {
-	// A scene that writes a file and reads it again finds it where it runs, and no strip finds another's; all else is in the
-	// bundle, whose folders are there too.
-	const fs::path out = scratch / "out", here = scratch / "here", ini = scratch / "strip.ini", log = scratch / "log";
-	fs::create_directory(out);
-	fs::copy(folder, here, fs::copy_options::directories_only | fs::copy_options::recursive);
-	std::string lines = scene_in(folder) + strip_ini(task, out / ("whole" + task.spec.suffix()));
+	// What a scene sees is the same on each worker and for each strip, lest it make good workers differ: the bundle, and where it
+	// runs, are at fixed places; what else there is for povray alone has a name that nobody can guess, and no scene can list a
+	// folder. What a scene writes, it finds again where it runs, and no strip finds another's.
+	const Sandbox& sandbox = renderer.sandbox;
+	const std::string secret = random_hex(16);
+	const Seen bundle = sandbox.placed(root, "/scene"), here = sandbox.placed(scratch / "here", "/farm/here"),
+			   own = sandbox.placed(scratch / secret, "/" + secret), out(own.from / "out", own.at / "out");
+	const fs::path scene = (bundle.at / folder.lexically_relative(root)).lexically_normal(), log = own.from / "log";
+	fs::create_directories(out.from);
+	fs::copy(folder, here.from, fs::copy_options::directories_only | fs::copy_options::recursive);
+	std::string lines = scene_in(scene) + strip_ini(task, out.at / ("whole" + task.spec.suffix()));
 	const bool share = renderer.light && task.rows < task.spec.height,
-			   known = share && renderer.light->fetch(task, scratch / "light");
+			   known = share && renderer.light->fetch(task, own.from / "light");
 	if (share)
-		lines += "Radiosity_File_Name=\"" + ((known ? scratch : out) / "light").string() + "\"\n" +
+		lines += "Radiosity_File_Name=\"" + ((known ? own : out).at / "light").string() + "\"\n" +
 				 (known ? "Radiosity_From_File=On\n" : "Radiosity_To_File=On\n");
-	write_scratch(ini, lines);
-	Command command = povray_command(renderer.povray, ini, here);
-	command.folder = here;
+	write_scratch(own.from / "strip.ini", lines);
+	Command command = povray_command(renderer.povray, own.at / "strip.ini", here.at);
+	command.folder = here.at;
 	command.log = log;
 	command.nice = renderer.nice;
 
@@ -64,7 +66,7 @@ Rendered render_strip(const Renderer& renderer, const Task& task, const fs::path
 	std::string limit;
 	Overseer overseer(renderer.limits, scratch);
 	const auto start = std::chrono::steady_clock::now();
-	Process process(renderer.sandbox.fenced(command, {{root, scratch}, {out, here}, false}, renderer.limits));
+	Process process(sandbox.fenced(command, {{bundle, own}, {out, here}, false}, renderer.limits));
 	while (limit.empty() && !process.over(0.1)) {
 		result.given_up = give_up();
 		if (result.given_up)
@@ -82,12 +84,12 @@ Rendered render_strip(const Renderer& renderer, const Task& task, const fs::path
 	result.not_started = limit.empty() && process.code() != 0 && did_not_start(output);
 	const bool good = limit.empty() && process.code() == 0;
 	if (share && good && !known)
-		renderer.light->keep(task, out / "light");
+		renderer.light->keep(task, out.from / "light");
 	else if (known && !good)
 		renderer.light->forget(task);
 	if (good)
-		result.picture = picture_in(out, task.spec.suffix());
-	result.failure = {tail(limit.empty() ? error_line(output, process.code(), folder) : limit, 1900),
+		result.picture = picture_in(out.from, task.spec.suffix());
+	result.failure = {tail(limit.empty() ? error_line(output, process.code(), scene) : limit, 1900),
 		tail(output, static_cast<size_t>(limits::log_bytes) / 2)};
 	return result;
 }

@@ -193,13 +193,14 @@ for stream in ("All", "Debug", "Fatal", "Render", "Statistic", "Warning"):
 sent = {what: send(*way)[0] for what, way in writing.items()}
 own = send(HEAD + '#fopen F "made.inc" write\n#write (F, "#declare Y = 5;")\n#fclose F\n#include "made.inc"\n#if (Y != 5) #error "lost" #end\n#fopen G "sub/x" write\n',
            files={"sub/y.inc": ""})[0]
-beside = send(HEAD + WRITE % ("../out/a.png", "write"))[0]
+beside = [send(HEAD + WRITE % ("../" + place + "a.png", "write"))[0] for place in ("", "out/", "../")]
 for what, number in sent.items():
     outcome(number)
     assert os.listdir(TARGET) == ["there"] and open(TARGET + "/there").read() == "as it was", (what, os.listdir(TARGET))
 assert sorted(os.listdir(OTHER)) == ["other.inc", "scene.pov"], os.listdir(OTHER)
 assert outcome(own)[0] == "strip", outcome(own)
-assert outcome(beside)[0] == "failure" and "pictures of its own" in outcome(beside)[1], outcome(beside)
+for number in beside:
+    assert outcome(number)[0] == "failure" and "Cannot open user file ../" in outcome(number)[1], outcome(number)
 leave(fenced)
 
 # Limits.

@@ -12,8 +12,10 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
-#include <fstream>
 #include <fcntl.h>
+#include <fstream>
+#include <set>
+#include <sstream>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <thread>
@@ -113,6 +115,27 @@ TEST_F(Fence, NothingElse) {
 			fs::remove(left);
 }
 
+// Nor does anything tell where it lies here, the program itself included.
+TEST_F(Fence, ThingsAreWhereTheyAreOnEachMachine) {
+	Command command;
+	command.words = {shell, "-c",
+		"read -r x < /r/file && echo $x; echo x > y; for f in /* /home/*; do echo $f; done; [ -e $W ] && echo HERE; [ -e " +
+			std::string(shell) + " ] && echo SHELL"};
+	command.environment = {{"W", work.path().string()}};
+	command.folder = "/w/x";
+	command.log = work.path() / "log";
+	run(sandbox.fenced(
+		command, {{sandbox.placed(work.path() / "read", "/r")}, {sandbox.placed(work.path() / "write", "/w/x")}, false}));
+	printed = read_file(command.log);
+	EXPECT_EQ(printed.substr(0, 5), "seen\n") << printed;
+	EXPECT_EQ(read_file(work.path() / "write/y"), "x\n");
+	std::istringstream lines(printed.substr(std::min<size_t>(5, printed.size())));
+	for (std::string line; std::getline(lines, line);)
+		EXPECT_TRUE((std::set<std::string>{"/dev", "/home/*", "/lib", "/lib64", "/program", "/r", "/usr", "/w"}).count(line))
+			<< line;
+	EXPECT_EQ(Sandbox().placed("/a", "/b").at, "/a") << "without a fence things are where they are";
+}
+
 TEST_F(Fence, TheWholeFileSystemMayBeReadWhereOneAsks) {
 	Command command;
 	command.words = {shell, "-c",
@@ -195,10 +218,12 @@ TEST(FenceWords, AreInTheirOrder) {
 	command.words = {"/bin/p", "--flag"};
 	command.folder = "/w/here";
 	command.environment = {{"A", "b c"}};
-	const auto words = fence_words("/usr/bin/bwrap", {{"/r"}, {"/r/w"}, false}, command);
+	const Room room{{Seen("/from", "/r")}, {Seen("/r/w")}, false};
+	const auto words = fence_words("/usr/bin/bwrap", room, command);
 	const auto at = [&](const std::string& word) { return std::find(words.begin(), words.end(), word) - words.begin(); };
 	for (const char* needed : {"--unshare-all", "--die-with-parent", "--cap-drop", "--seccomp", "--clearenv"})
 		EXPECT_LT(at(needed), at("--")) << needed;
+	EXPECT_EQ(at("/r"), at("/from") + 1);
 	EXPECT_LT(at("/r"), at("/r/w")) << "what is written to lies within what is read";
 	EXPECT_LT(at("/r/w"), at("--remount-ro"));
 	EXPECT_LT(at("--clearenv"), at("--setenv"));

@@ -186,6 +186,27 @@ TEST(Scheduler, WithNobodyElseAnAnswerMustDo) {
 	EXPECT_EQ(s.jobs().at(1).stage, Stage::done);
 }
 
+// However many strips they differ about, each is named once.
+TEST(Scheduler, WhereTwoDifferThereIsNoThirdToAsk) {
+	Rules rules;
+	rules.check_every = 1;
+	Scheduler s(rules, 1);
+	s.add_job(1, 3, 0);
+	for (const char* w : {"a", "b"})
+		s.add_worker(w, 1, 0);
+	Changes changes;
+	for (Time now = 0; now < 60 && s.jobs().at(1).stage == Stage::running; ++now) {
+		for (const char* w : {"a", "b"})
+			while (const auto lease = s.take(w, now))
+				s.complete(lease->id, truth(1, lease->strip) + (*w == 'b'), now, changes);
+		s.tick(now, changes);
+	}
+	EXPECT_EQ(s.jobs().at(1).stage, Stage::failed);
+	EXPECT_EQ(changes.given_up.size(), 3u);
+	const auto& names = changes.split.at(1);
+	EXPECT_EQ(std::vector<WorkerId>(names.begin(), names.end()), (std::vector<WorkerId>{"a", "b"}));
+}
+
 TEST(Scheduler, RestoredFromItsOwnVotes) {
 	Scheduler s(unchecked(), 1);
 	s.add_job(1, 10, 0);
