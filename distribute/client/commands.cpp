@@ -167,7 +167,7 @@ int fetch_command(const Words& words) {
 	const std::int64_t id = job_number(a);
 	const json job = client.get(path_of(id)), done = client.get(path_of(id, "/pictures"));
 	const fs::path folder = a.get("--to");
-	fs::create_directories(folder);
+	make_folder(folder);
 	json names = json::array();
 	const auto bring = [&](const std::string& name, const std::string& path) {
 		if (name.find('/') != std::string::npos)

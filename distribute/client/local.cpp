@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // bhfarm render: a server and a worker of one's own, for one job.
+#include "distribute/client/claim.h"
 #include "distribute/client/commands.h"
 #include "distribute/client/local_farm.h"
 #include "distribute/client/show.h"
@@ -139,8 +140,16 @@ int render_command(const Words& words) {
 
 	remove_forgotten();
 	const fs::path state = state_of(prepared, output);
+	make_folder(state_folder());
+	// Two of these may not write the same pictures, nor the same film.
+	std::vector<std::unique_ptr<Claim>> claims;
+	std::set<fs::path> written = {output / (spec.name + spec.suffix())};
+	if (!film.empty())
+		written.insert(film);
+	for (const fs::path& file : written)
+		claims.push_back(std::make_unique<Claim>(state_folder() / "claims", file));
 	const bool fresh = !fs::exists(state);
-	fs::create_directories(state);
+	make_folder(state);
 	fs::permissions(state, fs::perms::owner_all); // the token is nobody else's
 	const FileLock lock(state / "lock", "this very job is being rendered already");
 	write_durably(state / "token", random_hex(32) + "\n");

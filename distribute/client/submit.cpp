@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "distribute/client/submit.h"
 
+#include "distribute/client/show.h"
 #include "distribute/common/error.h"
 #include "distribute/common/files.h"
 #include "distribute/render/povray.h"
@@ -63,7 +64,11 @@ Prepared prepare(const Arguments& arguments) {
 
 void try_out(Prepared& p, const Arguments& arguments, int slots, const std::atomic<bool>* stop) {
 	JobSpec& spec = p.scene.spec;
-	p.files = gather(p.scene, {p.povray, p.sandbox, stop}, arguments.all("--assets"));
+	{
+		ProgressLine progress;
+		const auto show = [&](const std::string& what) { progress.show("trying it out: " + what); };
+		p.files = gather(p.scene, {p.povray, p.sandbox, stop, show}, arguments.all("--assets"));
+	}
 	spec.strip_rows = strip_rows(spec, p.files, asked_strips(arguments, spec), slots);
 	spec.check();
 	if (!spec.whole_because.empty())

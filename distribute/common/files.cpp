@@ -9,6 +9,7 @@
 #include <ctime>
 #include <fcntl.h>
 #include <mutex>
+#include <pwd.h>
 #include <set>
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -37,7 +38,14 @@ fs::path user_folder(const char* variable, const char* otherwise) {
 	if (xdg && *xdg == '/')
 		return fs::path(xdg) / "bhfarm";
 	const char* home = std::getenv("HOME");
-	return fs::path(home && *home ? home : "/tmp") / otherwise / "bhfarm";
+	if (!home || *home != '/') {
+		const passwd* self = ::getpwuid(::geteuid());
+		home = self ? self->pw_dir : nullptr;
+	}
+	// Not below /tmp: what others could put there first would be taken for ours.
+	if (!home || *home != '/')
+		throw Error(std::string("there is no place to keep things: set HOME or ") + variable);
+	return fs::path(home) / otherwise / "bhfarm";
 }
 
 } // namespace
@@ -87,6 +95,13 @@ void move_durably(const fs::path& from, const fs::path& to) {
 void write_out(std::string_view data, const std::string& what) {
 	if (std::fwrite(data.data(), 1, data.size(), stdout) != data.size() || std::fflush(stdout) != 0)
 		throw system_error("cannot write " + what);
+}
+
+void make_folder(const fs::path& folder) {
+	std::error_code error;
+	fs::create_directories(folder, error);
+	if (error)
+		throw Error("cannot make the folder " + folder.string() + ": " + error.message(), error.value());
 }
 
 std::string read_file(const fs::path& file) {

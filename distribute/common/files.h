@@ -24,6 +24,8 @@ void sync_folder(const fs::path& folder);
 void move_durably(const fs::path& from, const fs::path& to);
 /// All of it to stdout; throws Error, naming it as `what`.
 void write_out(std::string_view data, const std::string& what);
+/// A folder, and those above it, unless they are there; throws Error.
+void make_folder(const fs::path& folder);
 /// The whole content; throws Error.
 std::string read_file(const fs::path& file);
 
@@ -60,7 +62,8 @@ private:
 
 /// The folder this program's file is in.
 fs::path program_folder();
-/// $XDG_STATE_HOME/bhfarm or ~/.local/state/bhfarm; XDG_CACHE_HOME likewise.
+/// $XDG_STATE_HOME/bhfarm or .local/state/bhfarm in $HOME or, if that is not set, in the user's own home; XDG_CACHE_HOME
+/// likewise. Throws Error where there is none of them.
 fs::path state_folder();
 fs::path cache_folder();
 

@@ -7,6 +7,7 @@
 #include "distribute/scene/settle.h"
 
 #include <atomic>
+#include <functional>
 #include <set>
 
 namespace farm {
@@ -23,7 +24,8 @@ struct Parsed {
 struct Trier {
 	std::filesystem::path povray;
 	Sandbox sandbox;
-	const std::atomic<bool>* stop = nullptr; ///< once it is true, what runs is ended, and Stopped thrown
+	const std::atomic<bool>* stop = nullptr;            ///< once it is true, what runs is ended, and Stopped thrown
+	std::function<void(const std::string&)> doing = {}; ///< is told what is tried now, if there is one
 };
 
 /// Parses one frame and renders one pixel of it without its textures' cost. Throws Error with POV-Ray's own words if it does not

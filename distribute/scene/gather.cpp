@@ -91,6 +91,11 @@ Gathered gather(SettledScene& scene, const Trier& trier, const std::vector<std::
 	JobSpec& spec = scene.spec;
 	std::set<std::string> reads;
 	const int count = spec.animation ? (spec.last - spec.first) / spec.step + 1 : 1;
+	const auto tell = [&](const std::string& what) {
+		if (trier.doing)
+			trier.doing(what);
+	};
+	tell(spec.animation ? "parsing the scene for the first, the middle and the last frame" : "parsing the scene");
 	std::vector<std::future<Parsed>> parses; // at once: most of the time povray waits for itself
 	for (const int index : std::set<int>{0, count / 2, count - 1})
 		parses.push_back(std::async(std::launch::async, [&, frame = spec.frame(index)] { return parse(scene, frame, trier); }));
@@ -132,6 +137,8 @@ Gathered gather(SettledScene& scene, const Trier& trier, const std::vector<std::
 		result.bundle.files.begin(), result.bundle.files.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
 	spec.bundle = result.bundle.id();
 	constexpr double patience = 10;
+	if (spec.whole_because.empty())
+		tell("rendering a small frame, to see how long it takes");
 	if (spec.whole_because.empty() && radiosity)
 		result.light_seconds = start_time(scene, spec.frame(count / 2), trier, result.parse_seconds, patience);
 	if (spec.whole_because.empty())

@@ -65,7 +65,8 @@ public:
 	Awaitable<std::optional<Task>> take(WorkerId worker, double wait, std::shared_ptr<Peer> peer);
 	/// Those of the leases that are to be dropped. 404 likewise.
 	std::vector<LeaseId> beat(const WorkerId& worker, const std::vector<LeaseId>& leases);
-	/// A strip's picture. Empty: taken; else why it changed nothing. Throws HttpError 422 if the file is not what `sha256` says.
+	/// A strip's picture. Empty: taken; else why not: its lease has ended, and nothing changes, or it is no good, and counts as a
+	/// failure. Throws HttpError 422 if the file is not what `sha256` says.
 	Awaitable<std::string> report(LeaseId lease, fs::path file, std::string sha256, double seconds);
 	Awaitable<std::string> failed(LeaseId lease, Failure failure);
 	Awaitable<std::string> give_back(LeaseId lease);

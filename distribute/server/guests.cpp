@@ -149,7 +149,8 @@ Awaitable<std::string> Farm::report(LeaseId id, fs::path file, std::string sha25
 	if (!checked.damage.empty()) {
 		Failure failure;
 		failure.line = "the worker sent no good picture: " + checked.damage;
-		co_return co_await failed(id, std::move(failure));
+		const std::string why = failure.line, ended = co_await failed(id, std::move(failure));
+		co_return ended.empty() ? why : ended;
 	}
 	co_await move(file, spool.strip(lease.job, lease.strip, checked.pixels, spec.suffix()));
 	// The ledger is the fence: of two reports that come at once it takes one.

@@ -107,7 +107,8 @@ assert send(ask, lease, strip[:-1], sha(strip))[0] == 422
 assert send(ask, lease, strip + b"x", sha(strip))[0] == 422
 broken = strip[:-20] + b"\0" + strip[-19:]
 got = send(ask, lease, broken)[1]
-assert got["accepted"], got # as a failure of the worker's
+assert not got["accepted"] and "no good picture" in got["why"], got # as a failure of the worker's
+assert "has ended" in send(ask, lease, strip)[1]["why"]
 wait(lambda: ask("/v1/jobs/%d" % number)[1]["strips_out"] == 0, "the strip to come back")
 other = png([bytes([100] * 3 * 8)] * 5)
 lease = take()

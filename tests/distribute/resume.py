@@ -90,7 +90,7 @@ while True:
         shown += os.read(terminal[0], 1000)
     except OSError: # the terminal's other end is closed
         break
-assert process.wait() == 0 and b"/15 strips" in shown and b"/3 frames" in shown and b"to go" in shown and b"\n" not in shown.strip(), shown
+assert process.wait() == 0 and b"/15 strips" in shown and b"/3 frames" in shown and b"to go" in shown and b"parsing the scene" in shown and b"rendering a small frame" in shown and b"\n" not in shown.strip(), shown
 same(WORK + "/again2.png", WORK + "/reference/film2.png")
 assert "strips" not in done.stderr.replace(done.stderr.split("\n")[0], ""), done.stderr
 
