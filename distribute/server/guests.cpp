@@ -16,16 +16,20 @@ HttpError stranger(const WorkerId& worker) { return {404, "this server does not 
 
 } // namespace
 
-// All workers make the same pixels as the first of those that are here.
+// All workers make the same pixels as those that are here and get work. Who is to leave, or was set aside, has no say: that is
+// how somebody's wrong first one is got rid of.
 void Farm::welcome(const Hello& hello, const std::string& from) {
 	for (const auto& [id, other] : all_guests) {
-		if (id == hello.id)
+		const auto state = scheduler.workers().find(id);
+		if (id == hello.id || state == scheduler.workers().end() || state->second.draining || !state->second.aside.empty())
 			continue;
+		const char* const way = "; if that is the wrong one, 'bhfarm drain' it";
 		if (other.hello.povray != hello.povray)
-			throw HttpError(409,
-				hello.name + " is turned away: its povray is '" + hello.povray + "', the farm's is '" + other.hello.povray + "'");
+			throw HttpError(409, hello.name + " is turned away: its povray is '" + hello.povray + "', that of " +
+									 other.hello.name + ", which is here, '" + other.hello.povray + "'" + way);
 		if (other.hello.probe != hello.probe)
-			throw HttpError(409, hello.name + " is turned away: its povray makes other pixels than that of " + other.hello.name);
+			throw HttpError(409, hello.name + " is turned away: its povray makes other pixels than that of " + other.hello.name +
+									 ", which is here" + way);
 		break;
 	}
 	Guest& guest = all_guests[hello.id];

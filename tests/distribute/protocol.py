@@ -7,7 +7,7 @@ import socket
 import subprocess
 import time
 
-from farm import BIN, ENV, WORK, Server, new_token, wait
+from farm import BIN, ENV, WORK, Server, bhfarm, new_token, wait
 from hand import BUNDLE, BUNDLE_ID, JOB, ME, SCENE, bring, png, send, sha
 
 TOKEN = new_token()
@@ -100,7 +100,15 @@ for path, body, method, expected in (
 # Strips that are damaged, of the wrong size, or no picture: none is taken, and the lease's strip goes on.
 bring(ask)
 assert ask("/v1/workers", {"id": "a-worker-of-mine", "name": "x", "slots": 1})[0] == 201
-assert ask("/v1/workers", {"id": "another-worker", "name": "y", "slots": 1, "povray": "3.8"})[0] == 409
+other = {"id": "another-worker", "name": "y", "slots": 1, "povray": "3.8"}
+status, got = ask("/v1/workers", other)
+assert status == 409 and "its povray is '3.8'" in got["error"] and "'bhfarm drain' it" in got["error"], got
+# Who is to leave has no say: a wrong first one keeps nobody out.
+bhfarm("drain", "a-worker-of-mine", "--token-file", WORK + "/token", server=server)
+assert ask("/v1/workers", other)[0] == 201
+assert ask("/v1/workers", {"id": "a-worker-of-mine", "name": "x", "slots": 1})[0] == 409
+ask("/v1/workers/another-worker", method="DELETE")
+assert ask("/v1/workers", {"id": "a-worker-of-mine", "name": "x", "slots": 1})[0] == 201
 number = ask("/v1/jobs", dict(job, animation=False, first=0, last=0, film_rate=0))[1]["job"]
 lease = take()
 assert send(ask, lease, strip[:-1], sha(strip))[0] == 422
