@@ -18,12 +18,25 @@ std::string JobSpec::picture(int frame) const {
 	return name + number + suffix();
 }
 
+namespace {
+
+void in(const char* what, std::int64_t value, std::int64_t least, std::int64_t most) {
+	if (value < least || value > most)
+		throw Error(std::string(what) + " is " + std::to_string(value) + "; it must be from " + std::to_string(least) + " to " +
+					std::to_string(most));
+}
+
+} // namespace
+
+void JobSpec::check_size() const {
+	in("width", width, 1, limits::pixels);
+	in("height", height, 1, limits::pixels);
+	if (const std::int64_t all = std::int64_t(width) * height; all > limits::area)
+		throw Error("the size is " + std::to_string(width) + "x" + std::to_string(height) + ", " + std::to_string(all) +
+					" pixels; a frame may have " + std::to_string(limits::area));
+}
+
 void JobSpec::check() const {
-	const auto in = [](const char* what, std::int64_t value, std::int64_t least, std::int64_t most) {
-		if (value < least || value > most)
-			throw Error(std::string(what) + " is " + std::to_string(value) + "; it must be from " + std::to_string(least) +
-						" to " + std::to_string(most));
-	};
 	if (!is_plain_name(name) || name.size() > 200)
 		throw Error("name is '" + shown(name) + "'; it must be a file's name without its folder");
 	if (!is_sha256(bundle))
@@ -31,8 +44,7 @@ void JobSpec::check() const {
 	for (const auto& line : options)
 		if (line.size() > 4096 || !is_ini_setting(line))
 			throw Error("options has '" + shown(line) + "'; each must be one line KEY=VALUE, the value quoted if it has blanks");
-	in("width", width, 1, limits::pixels);
-	in("height", height, 1, limits::pixels);
+	check_size();
 	in("first", first, 0, 1 << 30);
 	in("last", last, first, 1 << 30);
 	in("step", step, 1, 1 << 30);

@@ -23,6 +23,7 @@ constexpr int protocol_version = 1;
 /// Bounds on what is taken from others.
 namespace limits {
 constexpr std::int64_t pixels = 1 << 16;         ///< width or height
+constexpr std::int64_t area = 1 << 30;           ///< of a frame: povray keeps 20 bytes a pixel, for whatever strip of it
 constexpr std::int64_t frames = 1000000;         ///< of a job
 constexpr std::int64_t strips = 2000000;         ///< of a job
 constexpr std::int64_t files = 20000;            ///< of a bundle
@@ -79,6 +80,8 @@ struct JobSpec {
 	std::string suffix() const { return format == Format::png ? ".png" : ".exr"; }
 	/// Throws Error if anything is out of range.
 	void check() const;
+	/// Likewise the frame's size alone.
+	void check_size() const;
 };
 
 /// A worker presents itself. Said again whenever the server does not know it, with the same id.

@@ -130,6 +130,7 @@ public:
 		// POV-Ray's own default is 160x120.
 		spec.width = spec.width ? spec.width : 160;
 		spec.height = spec.height ? spec.height : 120;
+		spec.check_size();
 		frames(wishes.frames);
 		format(wishes.format);
 		fs::path name = output.filename();

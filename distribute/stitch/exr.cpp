@@ -15,6 +15,7 @@
 #include <cstring>
 #include <fstream>
 #include <map>
+#include <optional>
 
 namespace farm::exr {
 namespace {
@@ -25,14 +26,15 @@ size_t size_of(Imf::PixelType type) { return type == Imf::HALF ? 2 : 4; }
 
 /// The channels of some rows, one after the other as the file has them.
 struct Pixels {
-	int width = 0, first = 0, rows = 0; ///< rows as counted in the frame
+	int width = 0, left = 0, first = 0, rows = 0; ///< as counted in the frame
 	std::vector<std::pair<std::string, Imf::PixelType>> channels;
 	std::vector<std::vector<char>> data;
 
-	Imf::FrameBuffer buffer(int left) {
+	size_t row_bytes(size_t channel) const { return size_of(channels[channel].second) * static_cast<size_t>(width); }
+	Imf::FrameBuffer buffer() {
 		Imf::FrameBuffer all;
 		for (size_t c = 0; c < channels.size(); ++c) {
-			const size_t one = size_of(channels[c].second), row = one * static_cast<size_t>(width);
+			const size_t one = size_of(channels[c].second), row = row_bytes(c);
 			data[c].resize(row * static_cast<size_t>(rows));
 			// OpenEXR counts from pixel (0, 0) of the frame.
 			char* origin = data[c].data() - static_cast<std::ptrdiff_t>(row) * first - static_cast<std::ptrdiff_t>(one) * left;
@@ -48,35 +50,50 @@ struct Pixels {
 	}
 };
 
-Pixels read(Imf::InputFile& file, int row, int rows) {
+/// What rows of the file are made of; none of them is read yet.
+Pixels shape(const Imf::InputFile& file) {
 	const auto window = file.header().dataWindow();
 	Pixels p;
 	p.width = window.max.x - window.min.x + 1;
-	p.first = row;
-	p.rows = rows;
-	if (row < window.min.y || row + rows - 1 > window.max.y)
-		throw Error(std::string(file.fileName()) + " has rows " + std::to_string(window.min.y) + " to " +
-					std::to_string(window.max.y) + "; " + std::to_string(row) + " to " + std::to_string(row + rows - 1) +
-					" are needed");
+	p.left = window.min.x;
 	const auto& list = file.header().channels();
 	for (auto c = list.begin(); c != list.end(); ++c)
 		p.channels.emplace_back(c.name(), c.channel().type);
 	if (p.channels.size() > 4)
 		throw Error(std::string(file.fileName()) + " has more channels than povray writes");
 	p.data.resize(p.channels.size());
-	file.setFrameBuffer(p.buffer(window.min.x));
-	file.readPixels(row, row + rows - 1);
 	return p;
 }
 
-void write(const Path& path, Imf::Header header, Pixels& p, int left) {
+/// Reads these rows, some at a time, for a frame may have gigabytes; `each` gets them.
+template <class Each> void read(Imf::InputFile& file, Pixels p, int row, int rows, Each each) {
+	constexpr int some = 32; // as many as OpenEXR packs together at most
+	const auto window = file.header().dataWindow();
+	if (row < window.min.y || row + rows - 1 > window.max.y)
+		throw Error(std::string(file.fileName()) + " has rows " + std::to_string(window.min.y) + " to " +
+					std::to_string(window.max.y) + "; " + std::to_string(row) + " to " + std::to_string(row + rows - 1) +
+					" are needed");
+	for (p.first = row; p.first < row + rows; p.first += p.rows) {
+		p.rows = std::min(some, row + rows - p.first);
+		file.setFrameBuffer(p.buffer());
+		file.readPixels(p.first, p.first + p.rows - 1);
+		each(p);
+	}
+}
+
+/// The header of a picture of these rows that are written in order, whatever the order was where it is from.
+Imf::Header header_for(Imf::Header header, int row, int rows) {
 	auto window = header.dataWindow();
-	window.min.y = p.first;
-	window.max.y = p.first + p.rows - 1;
+	window.min.y = row;
+	window.max.y = row + rows - 1;
 	header.dataWindow() = window;
-	Imf::OutputFile out(path.c_str(), header, 0);
-	out.setFrameBuffer(p.buffer(left));
-	out.writePixels(p.rows);
+	header.lineOrder() = Imf::INCREASING_Y;
+	return header;
+}
+
+void write(Imf::OutputFile& file, Pixels& p) {
+	file.setFrameBuffer(p.buffer());
+	file.writePixels(p.rows);
 }
 
 /// A picture from a stranger (or from his scene), before OpenEXR believes what it says: it would make room for whatever size an
@@ -159,8 +176,8 @@ void cut(const Path& whole, int row, int rows, const Path& strip) {
 	guarded(whole, [&] {
 		const Header believable(whole);
 		Imf::InputFile in(whole.c_str(), 0);
-		Pixels p = read(in, row, rows);
-		write(strip, in.header(), p, in.header().dataWindow().min.x);
+		Imf::OutputFile out(strip.c_str(), header_for(in.header(), row, rows), 0);
+		read(in, shape(in), row, rows, [&](Pixels& p) { write(out, p); });
 	});
 }
 
@@ -172,14 +189,18 @@ std::string check_strip(const JobSpec& spec, int row, int rows, const Path& stri
 		if (header.window("displayWindow") != frame || header.window("dataWindow") != part)
 			throw Error("the strip has other rows or another width than it should");
 		Imf::InputFile in(strip.c_str(), 0);
-		Pixels p = read(in, row, rows);
-		std::string all = "exr " + p.kind() + "\n";
-		for (const auto& [name, type] : p.channels)
+		const Pixels kind = shape(in);
+		for (const auto& [name, type] : kind.channels)
 			if (size_of(type) * 8 != static_cast<size_t>(spec.bits))
 				throw Error("the strip's channel " + name + " has not " + std::to_string(spec.bits) + " bits");
-		for (const auto& channel : p.data)
-			all.append(channel.data(), channel.size());
-		return sha256(all);
+		Sha256 name;
+		name.add("exr " + kind.kind() + "\n");
+		read(in, kind, row, rows, [&](Pixels& p) {
+			for (size_t y = 0; y < static_cast<size_t>(p.rows); ++y)
+				for (size_t c = 0; c < p.data.size(); ++c)
+					name.add({p.data[c].data() + y * p.row_bytes(c), p.row_bytes(c)});
+		});
+		return name.name();
 	});
 }
 
@@ -199,28 +220,26 @@ std::string kind_of(const Path& strip) {
 
 void stitch(const JobSpec& spec, const std::vector<Path>& strips, const Path& picture) {
 	guarded(picture, [&] {
-		Pixels all;
-		Imf::Header header;
-		int left = 0;
+		std::optional<Imf::OutputFile> out;
+		Pixels kind;
+		int done = 0, top = 0;
 		for (const auto& strip : strips) {
 			Imf::InputFile in(strip.c_str(), 0);
 			const auto window = in.header().dataWindow();
-			Pixels p = read(in, window.min.y, window.max.y - window.min.y + 1);
-			if (all.channels.empty()) {
-				header = in.header();
-				left = window.min.x;
-				all = std::move(p);
-				continue;
+			const Pixels here = shape(in);
+			const int rows = window.max.y - window.min.y + 1;
+			if (!out) {
+				kind = here;
+				top = window.min.y;
+				out.emplace(picture.c_str(), header_for(in.header(), top, spec.height), 0);
 			}
-			if (p.kind() != all.kind() || p.width != all.width || p.first != all.first + all.rows)
+			if (here.kind() != kind.kind() || here.width != kind.width || window.min.y != top + done || done + rows > spec.height)
 				throw Error(strip.string() + " does not go on where the one before it ends");
-			for (size_t c = 0; c < p.data.size(); ++c)
-				all.data[c].insert(all.data[c].end(), p.data[c].begin(), p.data[c].end());
-			all.rows += p.rows;
+			read(in, here, window.min.y, rows, [&](Pixels& p) { write(*out, p); });
+			done += rows;
 		}
-		if (all.rows != spec.height)
-			throw Error(picture.string() + ": its strips have " + std::to_string(all.rows) + " rows");
-		write(picture, header, all, left);
+		if (done != spec.height)
+			throw Error(picture.string() + ": its strips have " + std::to_string(done) + " rows");
 	});
 }
 

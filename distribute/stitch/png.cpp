@@ -128,11 +128,12 @@ std::string check_strip(const JobSpec& spec, int rows, const Path& strip) {
 	Reader in(strip); // its header
 	fits(in.kind, in.height);
 	if (is_joinable(strip)) {
-		Kind kind;
-		const std::string pixels = read_joinable(strip, kind);
-		fits(kind, pixels.size() / kind.row_bytes());
-		Sha256 name = name_of(kind);
-		name.add(pixels);
+		Sha256 name;
+		const auto begin = [&](const Kind& kind, std::size_t height) {
+			fits(kind, height);
+			name = name_of(kind);
+		};
+		read_joinable(strip, begin, [&](std::string_view some) { name.add(some); });
 		return name.name();
 	}
 	Row pixels; // one at a time: a whole frame may have gigabytes

@@ -7,11 +7,11 @@
 
 #include <zlib.h>
 
+#include <algorithm>
 #include <cstring>
 #include <fstream>
 #include <limits>
 #include <memory>
-#include <string_view>
 
 namespace farm::png {
 namespace {
@@ -22,6 +22,7 @@ constexpr std::string_view signature("\x89PNG\r\n\x1a\n", 8);
 constexpr std::string_view ending("\x03\x00", 2); ///< an empty last block
 constexpr size_t sum_bytes = 4, head_bytes = 2;   ///< Adler's sum at the end, zlib's head at the beginning
 constexpr int level = 6;
+constexpr size_t block_bytes = 1 << 20; ///< unpacked at a time, of what may have gigabytes
 
 const Bytef* bytes_of(std::string_view text) { return reinterpret_cast<const Bytef*>(text.data()); }
 
@@ -191,23 +192,41 @@ bool is_joinable(const Path& strip) {
 	return mark != std::string::npos && (pixels == std::string::npos || mark < pixels);
 }
 
-std::string read_joinable(const Path& strip, Kind& kind) {
+void read_joinable(const Path& strip, const std::function<void(const Kind&, std::uint32_t)>& begin,
+	const std::function<void(std::string_view)>& each) {
 	const Parts p = take_apart(strip);
-	kind = p.kind;
-	const size_t bytes = kind.row_bytes(), size = p.height * (bytes + 1);
-	if (size == 0 || size > std::numeric_limits<uInt>::max() / 2)
-		bad(strip, "it has no size that a strip has");
-	std::string filtered(size, 0);
+	begin(p.kind, p.height);
+	const size_t bytes = p.kind.row_bytes(), body = p.packed.size() - ending.size() - sum_bytes;
+	if (p.packed.size() > std::numeric_limits<uInt>::max())
+		bad(strip, "it is larger than a strip may be");
+	const size_t some = std::max<size_t>(1, block_bytes / (bytes + 1));
+	std::string filtered, pixels, above(bytes, 0);
 	Inflater z;
-	const size_t body = p.packed.size() - ending.size() - sum_bytes;
 	z.next_in = const_cast<Bytef*>(bytes_of(p.packed));
 	z.avail_in = static_cast<uInt>(body);
-	z.next_out = reinterpret_cast<Bytef*>(filtered.data());
-	z.avail_out = static_cast<uInt>(size);
+	for (size_t done = 0; done < p.height;) {
+		const size_t rows = std::min(some, p.height - done);
+		filtered.resize(rows * (bytes + 1));
+		pixels.resize(rows * bytes);
+		z.next_out = reinterpret_cast<Bytef*>(filtered.data());
+		z.avail_out = static_cast<uInt>(filtered.size());
+		const int status = inflate(&z, Z_NO_FLUSH);
+		if ((status != Z_OK && status != Z_BUF_ERROR) || z.avail_out > 0)
+			bad(strip, "it cannot be joined as it says");
+		auto* out = reinterpret_cast<Byte*>(pixels.data());
+		for (size_t y = 0; y < rows; ++y) {
+			const Byte* row = bytes_of(filtered) + y * (bytes + 1);
+			const bool first = done == 0 && y == 0;
+			if (!unfilter(first && *row >= 2 ? -1 : *row, row + 1, y ? out + (y - 1) * bytes : bytes_of(above), bytes,
+					p.kind.step(), out + y * bytes))
+				bad(strip, "a row is filtered as it may not be");
+		}
+		above.assign(pixels, pixels.size() - bytes, bytes);
+		each(pixels);
+		done += rows;
+	}
 	// data_type: bits left of the last byte; 128: between two blocks; 64: in the last (zlib.h, inflate).
-	const int status = inflate(&z, Z_NO_FLUSH);
-	if ((status != Z_OK && status != Z_BUF_ERROR) || z.avail_in > 0 || z.avail_out > 0 || z.data_type != 128 ||
-		p.packed.compare(body, ending.size(), ending) != 0)
+	if (z.avail_in > 0 || z.data_type != 128 || p.packed.compare(body, ending.size(), ending) != 0)
 		bad(strip, "it cannot be joined as it says");
 	Byte none = 0; // there must be nothing more
 	z.avail_in = static_cast<uInt>(ending.size() + sum_bytes);
@@ -215,16 +234,6 @@ std::string read_joinable(const Path& strip, Kind& kind) {
 	z.avail_out = 1;
 	if (inflate(&z, Z_FINISH) != Z_STREAM_END || z.avail_in > 0 || z.avail_out == 0)
 		bad(strip, "its pixels are damaged");
-	std::string pixels(p.height * bytes, 0);
-	const std::string zeros(bytes, 0);
-	auto* out = reinterpret_cast<Byte*>(pixels.data());
-	for (size_t y = 0; y < p.height; ++y) {
-		const Byte* row = bytes_of(filtered) + y * (bytes + 1);
-		if (!unfilter(y || *row < 2 ? *row : -1, row + 1, y ? out + (y - 1) * bytes : bytes_of(zeros), bytes, kind.step(),
-				out + y * bytes))
-			bad(strip, "a row is filtered as it may not be");
-	}
-	return pixels;
 }
 
 void join(const std::vector<Path>& strips, int height, const Path& picture) {

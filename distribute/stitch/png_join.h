@@ -9,7 +9,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace farm::png {
@@ -35,8 +37,10 @@ struct Kind {
 void write_joinable(const std::filesystem::path& strip, const Kind& kind, const std::string& pixels);
 /// Whether the strip says that it is such a one. Throws Error for a file that cannot be read.
 bool is_joinable(const std::filesystem::path& strip);
-/// The pixels of one that says so; throws Error unless it is true, to the last bit.
-std::string read_joinable(const std::filesystem::path& strip, Kind& kind);
+/// Reads one that says so: `begin` gets what it is and how many rows it has, `each` the pixels of whole rows, some at a time.
+/// Throws Error unless it is true to the last bit, which may be found after all rows were given out.
+void read_joinable(const std::filesystem::path& strip, const std::function<void(const Kind&, std::uint32_t)>& begin,
+	const std::function<void(std::string_view)>& each);
 /// Joins strips that `read_joinable` was content with; throws Error if they have not `height` rows or are of unlike kinds.
 void join(const std::vector<std::filesystem::path>& strips, int height, const std::filesystem::path& picture);
 

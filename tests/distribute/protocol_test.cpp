@@ -51,6 +51,14 @@ TEST(Protocol, EachFieldIsChecked) {
 		j[key] = value;
 		EXPECT_NE(fault<JobSpec>(j), "") << key << " = " << value;
 	}
+	for (const int height : {16384, 16385}) { // 2^30 pixels, and a row more
+		json j = good_job();
+		j["width"] = j["strip_rows"] = 65536;
+		j["height"] = height;
+		const std::string why = fault<JobSpec>(j);
+		EXPECT_EQ(why.empty(), height == 16384) << why;
+		EXPECT_EQ(why.find("65536x16385, 1073807360 pixels") != std::string::npos, height == 16385) << why;
+	}
 	for (const char* line : {"A=1", "Declare=A=-1.5", "Library_Path=\"a b\"", "Input_File_Name='x\"y.pov'", "A=x[1]"}) {
 		json j = good_job();
 		j["options"] = {line};

@@ -92,7 +92,7 @@ for words, text in ((["status", "x"], "the job's number is 'x'"), (["status", "9
                     (["submit", "film.ini", "--size", "640"], "the height in --size is ''"), (["submit", "film.ini", "--size", "0x5"], "the width in --size is '0'"),
                     (["submit", "film.ini", "--priority", "101"], "--priority is '101'"), (["submit", "film.ini", "--format", "gif"], "--format is 'gif'"),
                     (["submit", "film.ini", "--video", "x.avi"], "must end in .mp4"), (["submit", "film.ini", "--assets", "nosuch*"], "matches no file"),
-                    (["submit", "film.ini", "+W70000"], "Width is '70000'"), (["submit", "film.ini", "Nonsense=3"], "Nonsense=3"), (["submit", "."], "there is no scene"),
+                    (["submit", "film.ini", "+W70000"], "Width is '70000'"), (["submit", "film.ini", "+W60000", "+H60000"], "60000x60000, 3600000000 pixels; a frame may have"), (["submit", "film.ini", "Nonsense=3"], "Nonsense=3"), (["submit", "."], "there is no scene"),
                     (["submit", "nosuch\n.pov"], "there is no scene nosuch .pov"), (["submit", "film.pov", "--frames", "1-2"], "the scene has no Final_Frame")):
     refused(text, "bhfarm", words[0], "--server", server.url, *words[1:])
 assert server.ask("/v1/jobs")[1]["jobs"] == []

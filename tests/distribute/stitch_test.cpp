@@ -12,9 +12,6 @@
 
 #include <fstream>
 #include <random>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 namespace {
 
@@ -197,39 +194,6 @@ TEST_F(Join, WhatOnlyPretendsIsRefused) {
 	up[0] = 5;
 	std::string more = filtered + std::string(3 * width + 1, '\0');
 	EXPECT_THROW(check_strip(spec, 0, height, make(pack(more, true, Z_DEFAULT_STRATEGY))), Error) << "a row too many";
-}
-
-// A frame that is not cut may be of any size, and so may what a stranger sends in its place: it is checked row by row.
-TEST_F(Join, AWholeFrameTakesNoMemory) {
-	constexpr int width = 16000, height = 8000;
-	png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
-	png_infop info = png_create_info_struct(png);
-	std::FILE* file = std::fopen(at("whole.png").c_str(), "wb");
-	png_init_io(png, file);
-	png_set_compression_level(png, 1);
-	png_set_filter(png, 0, PNG_FILTER_NONE);
-	png_set_IHDR(png, info, width, height, 8, PNG_COLOR_TYPE_GRAY, 0, 0, 0);
-	png_write_info(png, info);
-	const std::vector<png_byte> row(width);
-	for (int y = 0; y < height; ++y)
-		png_write_row(png, row.data());
-	png_write_end(png, info);
-	png_destroy_write_struct(&png, &info);
-	std::fclose(file);
-	JobSpec spec;
-	spec.width = width;
-	spec.height = spec.strip_rows = height;
-	const pid_t child = ::fork();
-	if (child == 0) {
-		rusage before{}, after{};
-		::getrusage(RUSAGE_SELF, &before);
-		check_strip(spec, 0, height, at("whole.png"));
-		::getrusage(RUSAGE_SELF, &after);
-		::_exit(after.ru_maxrss - before.ru_maxrss < width * height / 1024 / 2 ? 0 : 1); // kB
-	}
-	int status = -1;
-	ASSERT_EQ(::waitpid(child, &status, 0), child);
-	EXPECT_EQ(status, 0);
 }
 
 } // namespace
