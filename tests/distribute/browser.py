@@ -41,6 +41,7 @@ class Browser:
         self.session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
         for domain in ("Page", "Runtime", "Log", "Network"):
             self.call(domain + ".enable")
+        self.call("Performance.enable", timeDomain="threadTicks")
         self.size(width, height)
 
     def close(self):
@@ -62,7 +63,7 @@ class Browser:
         if self.session:
             message["sessionId"] = self.session
         os.write(self.out, json.dumps(message).encode() + b"\0")
-        until = time.monotonic() + 60
+        until = time.monotonic() + 300
         while True:
             answer = self.read(until)
             assert answer is not None, "the browser does not answer to " + method
@@ -98,7 +99,7 @@ class Browser:
         assert "exceptionDetails" not in got, "%s\n%s" % (script, got["exceptionDetails"])
         return got["result"].get("value")
 
-    def wait(self, script, what=None, seconds=30):
+    def wait(self, script, what=None, seconds=300):
         """Until an expression is true; returns its value."""
         until = time.monotonic() + seconds
         while True:
@@ -114,6 +115,10 @@ class Browser:
                 raise AssertionError("waited in vain for %s\n%s\n%s" % (what or script, self.said[-5:], self.run("document.body.innerText")[:1500]))
             self.read(time.monotonic() + 0.05)
 
+    def work(self):
+        """Seconds that the page's thread has worked, by the processor's clock."""
+        return {m["name"]: m["value"] for m in self.call("Performance.getMetrics")["metrics"]}["TaskDuration"]
+
     def go(self, url):
         self.call("Page.navigate", url=url)
         self.wait("document.readyState === 'complete' && location.href !== 'about:blank'")
@@ -125,7 +130,14 @@ class Browser:
         self.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark" if on else "light"}])
 
     def place(self, selector):
-        """Where the element is: it must be in sight, and nothing above it."""
+        """Where the element is: it must be in sight, nothing above it, and still there when the page has been drawn once more."""
+        before, there = None, self.sight(selector)
+        while there != before:
+            self.run("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(1))))")
+            before, there = there, self.sight(selector)
+        return there
+
+    def sight(self, selector):
         return self.wait("""(() => { const e = [...document.querySelectorAll(%s)].find(e => e.checkVisibility()); if (!e) return null; e.scrollIntoView({block: 'nearest'});
             const r = e.getBoundingClientRect(), p = [r.x + r.width / 2, r.y + r.height / 2], top = document.elementFromPoint(...p);
             return r.width && (top === e || e.contains(top)) ? p : null; })()""" % json.dumps(selector), selector + " to be where it can be clicked")

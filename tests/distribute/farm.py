@@ -16,6 +16,7 @@ import pictures # noqa: E402
 from povray import patiently # noqa: E402
 
 BIN = os.path.abspath(sys.argv[1])
+os.environ["no_proxy"] = os.environ["NO_PROXY"] = "*" # nothing here is for the world outside
 os.umask(0o077) # tokens are secret, or there would be a word about it
 WORK = tempfile.mkdtemp(prefix="farm-test-")
 ENV = dict(os.environ, HOME=WORK + "/home")
@@ -35,6 +36,10 @@ def clean():
 
 
 atexit.register(clean)
+
+PATIENCE = 600 # seconds: what hangs comes to that, and no machine that is merely slow or busy
+# The loopback has 16 million addresses. On one of our own no other test takes our port while a server starts over.
+HERE = "127.%d.%d.%d" % (64 + (os.getpid() >> 16) % 64, os.getpid() >> 8 & 255, os.getpid() & 255)
 
 SCENE = """#version 3.7;
 global_settings { assumed_gamma 1 }
@@ -91,6 +96,39 @@ def same(a, b):
     assert differ == 0, "%d of %d bytes differ between %s and %s" % (differ, len(pa), a, b)
 
 
+class Gate:
+    """A povray that begins a strip only when it is let. So a test finds a job as far as it wants it, however fast or slow the machine is.
+    Being a script it does without a fence. `program` is what renders."""
+    def __init__(self, program=BIN + "/povray"):
+        self.folder = tempfile.mkdtemp(dir=WORK)
+        self.povray, self.number = self.folder + "/povray", 0
+        # Who takes a file away may go on; one file is for all.
+        with open(self.povray, "w") as f:
+            f.write("""#!/bin/bash
+case "$POVINI" in */strip.ini)
+    until [ -e %s/open ]; do
+        for one in %s/let-*; do mv "$one" %s/taken-$$ 2>/dev/null && break 2; done
+        [ -d %s ] || exit 1
+        sleep 0.02
+    done ;;
+esac
+exec %s "$@"
+""" % (*[self.folder] * 4, program))
+        os.chmod(self.povray, 0o700)
+        self.words = ["--no-sandbox", "--povray", self.povray]
+
+    def let(self, strips=1):
+        for _ in range(strips):
+            self.number += 1
+            open("%s/let-%d" % (self.folder, self.number), "w").close()
+
+    def open(self):
+        open(self.folder + "/open", "w").close()
+
+    def shut(self):
+        os.remove(self.folder + "/open")
+
+
 def start(program, *words, log):
     p = subprocess.Popen([BIN + "/" + program, *words], env=ENV, stdout=open(log, "a"), stderr=subprocess.STDOUT, start_new_session=True)
     running.append(p)
@@ -98,10 +136,10 @@ def start(program, *words, log):
 
 
 class Server:
-    """bhfarm-server on a free port of the loopback; `again` starts it over on the same port and spool."""
+    """bhfarm-server on a free port of the loopback; `again` starts it over on the same port and spool. Certificates are for 127.0.0.1."""
     def __init__(self, *words, spool=None, log=None):
         self.spool = spool or tempfile.mkdtemp(dir=WORK)
-        self.words, self.port = words, 0
+        self.words, self.port, self.host = words, 0, "127.0.0.1" if "--tls-cert" in words else HERE
         self.log = log or self.spool + ".log"
         self.again()
 
@@ -109,7 +147,7 @@ class Server:
         file = self.spool + "/url"
         if os.path.exists(file):
             os.remove(file)
-        self.process = start("bhfarm-server", "--listen", "127.0.0.1:%d" % self.port, "--spool", self.spool, *self.words, log=self.log)
+        self.process = start("bhfarm-server", "--listen", "%s:%d" % (self.host, self.port), "--spool", self.spool, *self.words, log=self.log)
         wait(lambda: os.path.exists(file) and open(file).read().strip(), "the server to start", self.process, self.log)
         self.url = open(file).read().strip()
         self.port = int(self.url.rsplit(":", 1)[1])
@@ -125,7 +163,7 @@ class Server:
         if token:
             request.add_header("Authorization", "Bearer " + token)
         try:
-            with urllib.request.urlopen(request, timeout=60) as answer:
+            with urllib.request.urlopen(request, timeout=PATIENCE) as answer:
                 status, got = answer.status, answer.read()
         except urllib.error.HTTPError as e:
             status, got = e.code, e.read()
@@ -170,7 +208,7 @@ def frames_in(film):
     return int(done.stdout)
 
 
-def wait(condition, what, process=None, log=None, seconds=120):
+def wait(condition, what, process=None, log=None, seconds=PATIENCE):
     until = time.monotonic() + seconds
     while not condition():
         if process and process.poll() is not None or time.monotonic() > until:

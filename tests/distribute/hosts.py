@@ -16,8 +16,7 @@ if "inside" not in sys.argv:
     sys.exit(77)
 
 from authority import authority, certify
-from farm import BIN, ENV, WORK, bare, new_token, running, same, scene, wait
-from fault_lab import SANDBOX
+from farm import BIN, ENV, PATIENCE, WORK, Gate, bare, new_token, running, same, scene, wait
 
 subprocess.run(["mount", "-t", "tmpfs", "none", "/run"], check=True)
 HOSTS = {"server": "10.77.0.1", "one": "10.77.0.2", "two": "10.77.0.3", "three": "10.77.0.4", "desk": "10.77.0.9"}
@@ -61,7 +60,7 @@ def said(host):
 
 
 def desk(*words, code=0, **changes):
-    done = subprocess.run(on("desk", "bhfarm", *words), env=dict(ENV, **changes), capture_output=True, text=True, timeout=120)
+    done = subprocess.run(on("desk", "bhfarm", *words), env=dict(ENV, **changes), capture_output=True, text=True, timeout=PATIENCE)
     assert done.returncode == code, (words, done.returncode, done.stdout, done.stderr)
     if code:
         assert done.stderr.count("\n") == 1 and not done.stdout, (words, done.stdout, done.stderr)
@@ -78,8 +77,11 @@ def table(*words):
     return [dict([(n, line[at[i]:at[i + 1]].strip()) for i, n in enumerate(names)], rest=line[at[-1] - 1:].strip()) for line in lines[1:]]
 
 
+gates = {host: Gate(BIN + "/standin") for host in ("one", "two", "three")}
+
+
 def worker(host):
-    return begin(host, "bhfarm-worker", "--slots", "1", "--name", host, "--nice", "0", "--cache", WORK + "/cache-" + host, "--povray", BIN + "/standin", *SANDBOX)
+    return begin(host, "bhfarm-worker", "--slots", "1", "--name", host, "--nice", "0", "--cache", WORK + "/cache-" + host, *gates[host].words)
 
 
 def workers():
@@ -90,15 +92,15 @@ def job(number):
     return desk("status", str(number), "--json")
 
 
-def submit(pause, *words):
-    return desk("submit", ini, "--strips", "10", "Declare=pause=%d" % pause, *words)
+def submit(*words):
+    return desk("submit", ini, "--strips", "10", *words)
 
 
 # The server: not without a token, where others can come.
 naked = subprocess.run(on("server", "bhfarm-server", "--listen", "10.77.0.1:7700", "--spool", WORK + "/spool"), env={**ENV, "BHFARM_TOKEN_FILE": ""}, capture_output=True, text=True)
 assert naked.returncode == 1 and "--token-file" in naked.stderr and naked.stderr.count("\n") == 1, naked
 assert "no answer from https://10.77.0.1:7700" in desk("status", code=1)
-serving = ("bhfarm-server", "--listen", "10.77.0.1:7700", "--spool", WORK + "/spool", "--lease", "2", "--check-every", "0", "--tls-cert", WORK + "/server.pem", "--tls-key", WORK + "/server.key")
+serving = ("bhfarm-server", "--listen", "10.77.0.1:7700", "--spool", WORK + "/spool", "--lease", "6", "--check-every", "0", "--tls-cert", WORK + "/server.pem", "--tls-key", WORK + "/server.key")
 server = begin("server", *serving)
 wait(lambda: "listening on https://10.77.0.1:7700" in said("server"), "the server", server, WORK + "/server.log")
 assert "token" in desk("status", code=1, BHFARM_TOKEN_FILE=WORK + "/wrong")
@@ -112,7 +114,7 @@ for words, text in ((("status", "1"), "there is no job 1"), (("status", "x"), "n
 ini = scene(WORK + "/scene", frames=4, width=64, height=40, ini="Output_File_Name=x")
 one, two = worker("one"), worker("two")
 wait(lambda: set(workers()) == {"one", "two"}, "two workers", one, WORK + "/one.log")
-number = int(submit(300))
+number = int(submit())
 state = job(number)
 assert (state["stage"], state["frames"], state["strips"], state["width"], state["name"]) == ("running", 4, 40, 64, "x"), state
 row = table("status")[0]
@@ -123,6 +125,8 @@ assert set(row) == {"one", "two"} and row["one"]["FROM"] == HOSTS["one"] and row
 
 # Pause: what is out comes in, nothing goes out. Resume.
 assert desk("pause", str(number)) == "" and desk("pause", str(number), "--json")["stage"] == "paused"
+for host in ("one", "two"):
+    gates[host].let()
 wait(lambda: job(number)["strips_out"] == 0, "the farm to rest")
 before = job(number)["strips_done"]
 assert table("status", str(number))[0]["STAGE"] == "paused"
@@ -136,17 +140,23 @@ wait(lambda: workers().get("three", {}).get("busy") == 1, "the third to have wor
 ip("link", "set", "to-three", "down")
 wait(lambda: "worker three is not heard of any more" in said("server"), "the server to miss it", server)
 ip("link", "set", "to-three", "up")
-wait(lambda: workers().get("three", {}).get("done", 0) > 0 or job(number)["stage"] == "done", "it to come back", three, WORK + "/three.log")
+wait(lambda: workers().get("three", {}).get("busy") == 1, "it to come back", three, WORK + "/three.log")
+gates["three"].open()
+wait(lambda: workers().get("three", {}).get("done", 0) > 0, "a strip of the third's", three, WORK + "/three.log")
+gates["three"].shut()
 # One is told to leave and finishes or returns its strip; one is killed. The server too.
 one.send_signal(signal.SIGTERM)
-assert one.wait(30) == 0 and "one" not in workers()
+gates["one"].let()
+assert one.wait(PATIENCE) == 0 and "one" not in workers()
 two.kill()
 server.kill()
 server.wait()
 assert "no answer" in desk("status", code=1)
 server = begin("server", *serving)
+for gate in gates.values():
+    gate.open()
 two, one = worker("two"), worker("one")
-watched = subprocess.run(on("desk", "bhfarm", "watch", str(number), "--json"), env=ENV, capture_output=True, text=True, timeout=120)
+watched = subprocess.run(on("desk", "bhfarm", "watch", str(number), "--json"), env=ENV, capture_output=True, text=True, timeout=PATIENCE)
 assert watched.returncode == 0 and json.loads(watched.stdout)["stage"] == "done" and "job %d done" % number in watched.stderr, watched
 assert "failed" not in said("server") and desk("log", str(number)) == "" and desk("log", str(number), "--json") == []
 names = ["x%d.png" % n for n in range(1, 5)] + ["x.mp4"]
@@ -159,25 +169,30 @@ for frame in range(1, 5):
 assert "is done" in desk("cancel", str(number), code=1) and "only one that failed" in desk("retry", str(number), code=1)
 
 # A job that fails says which strip and why; retry makes it run again. Cancel, remove.
-broken = submit(0, "Declare=fail=1", "--json")["id"]
-failed = subprocess.run(on("desk", "bhfarm", "watch", str(broken)), env=ENV, capture_output=True, text=True, timeout=120)
+broken = submit("Declare=fail=1", "--json")["id"]
+failed = subprocess.run(on("desk", "bhfarm", "watch", str(broken)), env=ENV, capture_output=True, text=True, timeout=PATIENCE)
 assert failed.returncode == 1 and "job %d failed" % broken in failed.stderr and re.search(
     "frame [1-4], rows [0-9]+ to [0-9]+ failed on 3 tries: standin: Parse Error: told to fail", failed.stderr), failed
 assert "told to fail" in table("status", str(broken))[0]["rest"], table("status", str(broken))
 log = desk("log", str(broken), "--json")
 assert len(log) >= 3 and all(entry["line"] == "standin: Parse Error: told to fail" for entry in log) and {e["worker"] for e in log} <= {"one", "two", "three"}, log
 assert desk("log", str(broken)).count("told to fail") >= 6
+for gate in gates.values(): # or it may have failed again before it is cancelled
+    gate.shut()
 assert desk("retry", str(broken), "--json")["stage"] == "running"
 assert desk("cancel", str(broken), "--json")["stage"] == "cancelled" and desk("cancel", str(broken)) == ""
 assert subprocess.run(on("desk", "bhfarm", "watch", str(broken)), env=ENV, capture_output=True).returncode == 1
-assert not os.path.exists(WORK + "/spool/jobs/%d/strips" % broken)
+wait(lambda: not os.path.exists(WORK + "/spool/jobs/%d/strips" % broken), "its strips to go")
+for gate in gates.values():
+    gate.open()
 assert desk("remove", str(broken), "--json") == {"removed": broken} and desk("remove", str(number)) == ""
-assert os.listdir(WORK + "/spool/jobs") == [] and desk("status", "--json") == []
+assert desk("status", "--json") == []
+wait(lambda: os.listdir(WORK + "/spool/jobs") == [], "their folders to go")
 # Drained by name and by id, a worker leaves by itself.
-assert desk("drain", "one") == "" and one.wait(60) == 0
+assert desk("drain", "one") == "" and one.wait(PATIENCE) == 0
 identity = workers()["two"]["id"]
-assert desk("drain", identity, "--json") == {"draining": identity} and two.wait(60) == 0
+assert desk("drain", identity, "--json") == {"draining": identity} and two.wait(PATIENCE) == 0
 assert list(workers()) == ["three"]
 three.send_signal(signal.SIGINT)
-assert three.wait(30) == 0 and workers() == {}
+assert three.wait(PATIENCE) == 0 and workers() == {}
 print("five hosts: joined, left, killed, cut off; each command as a table and as JSON")

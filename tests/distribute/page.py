@@ -7,11 +7,11 @@ import os
 import signal
 
 from browser import Browser
-from farm import ENV, WORK, Server, bhfarm, new_token, scene, wait
+from farm import ENV, PATIENCE, WORK, Gate, Server, bhfarm, new_token, scene, wait
 
 TOKEN = new_token()
 ENV["BHFARM_TOKEN_FILE"] = WORK + "/token"
-server = Server("--token-file", WORK + "/token", "--check-every", "0")
+server = Server("--token-file", WORK + "/token", "--check-every", "0", "--lease", "3600") # a stranger is not missed, however long this takes
 ask = functools.partial(server.ask, token=TOKEN)
 browser = Browser()
 STAGE = "document.getElementById('stage').textContent"
@@ -73,23 +73,27 @@ readable()
 fits()
 
 # A job from elsewhere is seen, and fills in strip by strip to its end, without a reload.
-browser.run("""window.mark = 1; window.seen = [];
-    setInterval(() => { const t = document.querySelector('#frames .tile'); if (t) seen.push([t.ariaLabel, t.querySelector('img')?.src ?? '', document.title]); }, 30)""")
-# Parsing takes long enough for each strip to be seen by itself, on a fast machine too.
-bhfarm("submit", scene(WORK + "/scene", extra="#for (I, 1, 1500000) #end\n"), "--strips", "5", server=server)
+browser.run("window.mark = 1")
+bhfarm("submit", scene(WORK + "/scene"), "--strips", "5", server=server)
 browser.wait(STAGE + " === 'running'")
 browser.wait("document.querySelectorAll('#frames .tile').length === 2")
-worker = server.worker(name="ada")
+gate = Gate()
+worker = server.worker(*gate.words, name="ada")
 browser.wait("document.getElementById('worker-rows').innerText.includes('frame 1, rows')", "the worker to be on a strip")
 readable()
-browser.wait(STAGE + " === 'done'", seconds=60)
+TILE = "[...document.querySelectorAll('#frames .tile')].find(t => t.ariaLabel === 'Frame %d: %d of 5 strips done')"
+for frame in (1, 2):
+    shown = set()
+    for strips in range(5):
+        browser.wait(TILE % (frame, strips))
+        if strips: # another picture each time
+            shown.add(browser.wait("(i => i?.naturalWidth && !%s.includes(i.src) && i.src)(%s?.querySelector('img'))" % (json.dumps(sorted(shown)), TILE % (frame, strips))))
+        gate.let()
+    if frame == 1:
+        browser.wait("document.title.startsWith('50 %')")
+browser.wait(STAGE + " === 'done'")
 browser.wait("[...document.querySelectorAll('#frames .tile')].every(t => t.querySelector('img')?.naturalWidth && t.ariaLabel.includes('5 of 5'))")
 assert browser.run("window.mark") == 1
-seen = browser.run("seen")
-steps = list(dict.fromkeys(s[0] for s in seen))
-assert len(steps) >= 4 and [int(s.split(": ")[1][0]) for s in steps] == sorted(int(s.split(": ")[1][0]) for s in steps), steps
-assert len({s[1] for s in seen if s[1] and "5 of 5" not in s[0]}) >= 1, "no picture before the frame was done: %s" % steps
-assert any(s[2].startswith("50 %") or s[2].startswith("60 %") or s[2].startswith("40 %") for s in seen), {s[2] for s in seen}
 assert browser.run("fetch(document.getElementById('film').href).then(r => r.blob()).then(b => b.size)") > 1000
 browser.click("#frames .tile")
 browser.wait("document.querySelector('#frame-picture img')?.naturalWidth === 100")
@@ -103,9 +107,11 @@ quiet()
 
 # Paused, resumed and cancelled by clicks.
 number = int(bhfarm("submit", scene(WORK + "/long", frames=400), "--strips", "5", "--video", "none", server=server).stdout)
+wait(lambda: ask("/v1/jobs/%d" % number)[1]["strips_out"] == 1, "the worker to begin", worker, WORK + "/ada.log")
 browser.wait("document.getElementById('job-title').textContent === 'film' && %s === 'running' && document.querySelector('#frames .tile')" % STAGE)
 browser.click("#pause")
 browser.wait(STAGE + " === 'paused'")
+gate.let()
 wait(lambda: ask("/v1/jobs/%d" % number)[1]["strips_out"] == 0, "the worker to come to rest")
 browser.wait("document.getElementById('slots-busy').textContent === '0 of 1'")
 browser.click("#resume")
@@ -121,9 +127,11 @@ browser.wait(STAGE + " === 'cancelled'")
 assert ask("/v1/jobs/%d" % number)[1]["stage"] == "cancelled"
 quiet()
 
+gate.open()
+
 # A scene that fails: POV-Ray's own line, and its output.
 bhfarm("submit", scene(WORK + "/bad", frames=4, height=40, extra='#if (clock > 0.3 & clock < 0.4) #error "no light in frame 2" #end\n'), "--video", "none", server=server)
-browser.wait(STAGE + " === 'failed'", seconds=60)
+browser.wait(STAGE + " === 'failed'")
 assert "Parse Error: Parse halted by #error directive: no light in frame 2" in browser.run("document.getElementById('job-error').textContent")
 browser.wait("document.querySelector('#failure-rows pre')?.textContent.includes('no light in frame 2')")
 browser.wait("document.querySelectorAll('#failure-rows > li').length >= 3")
@@ -132,7 +140,7 @@ fits()
 browser.click("#retry")
 browser.wait(STAGE + " === 'running' || %s === 'failed'" % STAGE)
 worker.send_signal(signal.SIGINT)
-worker.wait(30)
+worker.wait(PATIENCE)
 quiet()
 
 # What strangers name their jobs and workers, and what they say, is text.
@@ -146,7 +154,7 @@ lease = ask("/v1/workers/a-stranger/take", {"wait": 5})[1]["lease"]
 browser.run("location.hash = '#job-%d'" % strange)
 browser.wait("document.getElementById('job-title').textContent === %s" % json.dumps(bad))
 browser.wait("document.getElementById('failures').textContent.includes('window.hit') && document.getElementById('workers').textContent.includes('window.hit')")
-browser.wait("document.querySelector('#frames .tile')")
+browser.wait("document.querySelector('#frames .tile')?.ariaLabel === 'Frame 1: 0 of 5 strips done'")
 browser.click("#frames .tile")
 browser.wait("document.getElementById('frame').textContent.includes('window.hit')")
 browser.key("Escape")
@@ -154,15 +162,19 @@ assert browser.run("window.hit === undefined && !document.querySelector('img[src
 fits()
 quiet()
 
-# Ten thousand frames of 34 strips: a few tiles, no long stops.
+# Ten thousand frames of 34 strips: a few tiles, and not the work of counting to two hundred million (measured: to twenty). By the processor's clock, as the machine may be busy.
 film = ask("/v1/jobs", dict(spec, client_key="large", name="large", first=1, last=10000, digits=5, width=1920, height=1080, strip_rows=32))[1]["job"]
-browser.run("window.stops = []; new PerformanceObserver(l => stops.push(...l.getEntries().map(e => e.duration))).observe({type: 'longtask'}); location.hash = '#job-%d'" % film)
+yardstick = browser.work()
+browser.run("(() => { let n = 0; for (let i = 0; i < 1e8; ++i) n = (n * 31 + i) | 0; return n; })()")
+yardstick = browser.work() - yardstick
+before = browser.work()
+browser.run("location.hash = '#job-%d'" % film)
 browser.wait("document.querySelector('#frames .tile')?.ariaLabel === 'Frame 1: 0 of 34 strips done'")
 browser.wheel("#frames", 1e7)
 browser.wait("[...document.querySelectorAll('#frames .tile')].some(t => t.ariaLabel.startsWith('Frame 10000:'))")
 assert browser.run("document.querySelectorAll('#frames .tile').length") < 100
-stops = browser.run("stops")
-assert not [s for s in stops if s > 1000], stops
+worked = browser.work() - before
+assert worked < 2 * yardstick, (worked, yardstick)
 ask("/v1/jobs/%d/cancel" % film, method="POST", raw=b"")
 quiet()
 
@@ -198,4 +210,4 @@ quiet("ERR_CONNECTION_REFUSED", "ERR_INCOMPLETE_CHUNKED_ENCODING", "ERR_CONNECTI
 folder, process = browser.folder, browser.process
 browser.close()
 assert process.returncode is not None and not os.path.exists(folder)
-print("%d states of a frame seen, longest stop of the large film %.0f ms" % (len(steps), max(stops, default=0)))
+print("each strip seen; the large film took the page %.2f s, a count to a hundred million %.2f s" % (worked, yardstick))

