@@ -25,6 +25,7 @@ std::string after(const char* option, double value, const char* unit) {
 
 const std::vector<Option> limit_options = {
 	{"--wall-limit", "SECONDS", "the most a strip may take; 0: no limit, here and below", "86400"},
+	{"--hang-limit", "SECONDS", "how long it may do nothing at all", "300"},
 	{"--cpu-limit", "SECONDS", "likewise of processor time; default as --wall-limit", ""},
 	{"--memory-limit", "MB", "likewise of address space; default a slot's share of the machine's memory, at least 2048", ""},
 	{"--output-limit", "MB", "what it may write, all files together", "4096"},
@@ -35,6 +36,7 @@ Limits limits_from(const Arguments& a, int slots) {
 	Limits limits;
 	limits.wall = static_cast<double>(a.number("--wall-limit", 0, 1000000000));
 	limits.cpu = a.get("--cpu-limit").empty() ? limits.wall : static_cast<double>(a.number("--cpu-limit", 0, 1000000000));
+	limits.still = static_cast<double>(a.number("--hang-limit", 0, 1000000000));
 	limits.output = mega * a.number("--output-limit", 0, 1 << 30);
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 	const std::int64_t share = 0; // such programs map terabytes
@@ -73,6 +75,11 @@ std::string Overseer::complaint() {
 	const auto now = Clock::now();
 	if (limits.wall > 0 && now - start > std::chrono::duration<double>(limits.wall))
 		return "the render took longer" + after("--wall-limit", limits.wall, "s");
+	if (pulse && limits.still > 0 && now >= next_beat) {
+		next_beat = now + std::chrono::seconds(1);
+		if (pulse->hangs(std::chrono::duration<double>(now - start).count()))
+			return "the render did nothing for longer" + after("--hang-limit", limits.still, "s");
+	}
 	if (limits.output > 0 && now >= next_look) {
 		if (too_much_written())
 			return "the render wrote more" + after("--output-limit", double(limits.output) / mega, "MB");

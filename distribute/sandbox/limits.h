@@ -4,11 +4,13 @@
 #define FARM_LIMITS_H
 
 #include "distribute/common/arguments.h"
+#include "distribute/sandbox/pulse.h"
 
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +20,7 @@ namespace farm {
 struct Limits {
 	double wall = 0;         ///< seconds
 	double cpu = 0;          ///< seconds, of all threads
+	double still = 0;        ///< seconds without doing anything
 	std::int64_t memory = 0; ///< bytes of address space
 	std::int64_t output = 0; ///< bytes written, all files together; a file counts for one block at least
 };
@@ -34,7 +37,10 @@ class Overseer {
 public:
 	/// `folder` is where all that it writes goes.
 	Overseer(const Limits& limits, const std::filesystem::path& folder);
-	/// One line if a limit is passed, else empty. Looks at the disk now and then only; call it as often as you like.
+	/// The render's process, to see whether it hangs.
+	void watch(pid_t process) { pulse.emplace(process, limits.still); }
+	/// One line if a limit is passed, else empty. Looks at the disk and the process now and then only; call it as often as you
+	/// like.
 	std::string complaint();
 	/// One line if a render that ended with this code, having printed this, was stopped by a limit of the kernel's; else empty.
 	std::string complaint(int code, const std::string& log);
@@ -44,7 +50,8 @@ private:
 	bool too_much_written() const;
 	Limits limits;
 	std::filesystem::path folder;
-	Clock::time_point start = Clock::now(), next_look = Clock::now();
+	Clock::time_point start = Clock::now(), next_look = Clock::now(), next_beat = Clock::now();
+	std::optional<Pulse> pulse;
 };
 
 } // namespace farm

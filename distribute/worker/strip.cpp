@@ -67,6 +67,7 @@ Rendered render_strip(const Renderer& renderer, const Task& task, const fs::path
 	Overseer overseer(renderer.limits, scratch);
 	const auto start = std::chrono::steady_clock::now();
 	Process process(sandbox.fenced(command, {{bundle, own}, {out, here}, false}, renderer.limits));
+	overseer.watch(process.id());
 	while (limit.empty() && !process.over(0.1)) {
 		result.given_up = give_up();
 		if (result.given_up)

@@ -225,6 +225,13 @@ slow = worker("slow", "--wall-limit", "2", "--cpu-limit", "0")
 stage, error, log = outcome(send(HEAD + "#while (1) #end\n")[0])
 assert stage == "failure" and "--wall-limit allows, 2 s" in error, error
 leave(slow)
+# One that hangs: after its version and its test picture this one only sleeps.
+put(WORK + "/hangs", '#!/bin/bash\n[ "$1" = --version ] || grep -q probe "$POVINI" || exec sleep 1000\nexec %s/povray "$@"\n' % BIN)
+os.chmod(WORK + "/hangs", 0o755)
+hung = worker("hung", "--no-sandbox", "--povray", WORK + "/hangs", "--hang-limit", "2")
+stage, error, log = outcome(send(HEAD)[0])
+assert stage == "failure" and error == "the render did nothing for longer than --hang-limit allows, 2 s", error
+leave(hung)
 
 # Without the fence all of it works, but for what POV-Ray itself cannot do and what the farm says last.
 free = worker("free", "--no-sandbox")
