@@ -58,7 +58,7 @@ double Charted::slope(double u) const { return -std::sqrt(std::max(0.0, 1 - b_ *
 
 double Charted::density(double u) const { return scale_ * k_ * density_at(u, b_); }
 
-int Charted::before(double u, double w, double& s) const {
+int Charted::before(double u) const {
 	// By the nearest row; the orbit itself differs by little.
 	const Knot* row = first_ + (weight_[2] > weight_[1] ? 2 : 1);
 	int lo = 0, hi = count_;
@@ -70,20 +70,23 @@ int Charted::before(double u, double w, double& s) const {
 		lo++;
 	while (lo > 0 && this->u(lo) < u)
 		lo--;
+	return lo;
+}
+
+double Charted::way(int from_knot, double u, double w) const {
 	// How long it takes from one state to another that is near: by u where it changes, by w where that does, from the
 	// two-point formula with derivatives up to the third (sixth order; the fourth was off by 1e-4 where knots are far apart).
-	const Knot n = knot(lo);
+	const Knot n = knot(from_knot);
 	const double k2 = k_ * k_, near = n[0], a0 = acceleration(near, k2), a1 = acceleration(u, k2);
 	const double from = n[1] / std::max(b_, 1.0), du = u - near, dw = w - from, W = 0.5 * (from + w), A = 0.5 * (a0 + a1),
 				 both = W * W + A * A;
 	const double j0 = k2 * (3 * near - 1) * from, j1 = k2 * (3 * u - 1) * w;
 	const double q0 = k2 * ((3 * near - 1) * a0 + 3 * from * from), q1 = k2 * ((3 * u - 1) * a1 + 3 * w * w);
 	const double da = (a1 - a0) / 10, dj = (j1 - j0) / 10, j = (j0 + j1) / 120, q = (q0 + q1) / 120;
-	s = (du * W + dw * A) / both;
+	double s = (du * W + dw * A) / both;
 	for (int i = 0; i < 3; i++)
 		s = ((du + s * s * (da - s * j)) * W + (dw + s * s * (dj - s * q)) * A) / both;
-	s = std::max(0.0, s);
-	return lo;
+	return std::max(0.0, s);
 }
 
 Atlas::Atlas(const Settings& settings) : settings_(settings) {
@@ -185,6 +188,7 @@ bool Atlas::find(double b, Charted& orbit) const {
 	}
 	orbit.first_ = sheet.knots.data() + i;
 	orbit.angle_ = sheet.angles.data() + i;
+	orbit.through_ = sheet.through.data() + i;
 	orbit.stride_ = sheet.rows;
 	const int* n = sheet.count.data() + i;
 	orbit.count_ = std::min(std::min(n[0], n[1]), std::min(n[2], n[3]));

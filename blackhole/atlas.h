@@ -12,6 +12,7 @@
 #ifndef BLACKHOLE_ATLAS_H
 #define BLACKHOLE_ATLAS_H
 
+#include "blackhole/four.h"
 #include "blackhole/path.h"
 
 #include <cstddef>
@@ -22,7 +23,7 @@ namespace blackhole {
 /// A point of a charted orbit: u; b du/dphi going outward (minus dr/dlambda at unit energy; unlike du/ds it is smooth in b);
 /// cosine and sine of the angle. In single precision, 6e-8: a thousandth of the finest tolerance, and a line of cache
 /// for four.
-using Knot = float __attribute__((vector_size(16)));
+using Knot = Four;
 
 /// The orbit of one impact parameter.
 class Charted {
@@ -48,8 +49,14 @@ public:
 	}
 	/// du/ds going outward at u: <= 0.
 	double slope(double u) const;
-	/// The last knot no farther out than u, and the way s from it to u (w: slope(u)).
-	int before(double u, double w, double& s) const;
+	/// The last knot no farther out than u; and the way from it to a u that is near (w: slope(u)).
+	int before(double u) const;
+	double way(int knot, double u, double w) const;
+	/// The angle from the turning point to the effect sphere, whose speed is dr/dlambda there. turns() only.
+	double to_rim(double speed) const {
+		return 0.5 * speed *
+			   (weight_[0] * through_[0] + weight_[1] * through_[1] + weight_[2] * through_[2] + weight_[3] * through_[3]);
+	}
 	/// dN/ds at u, N the count of knots.
 	double density(double u) const;
 
@@ -57,6 +64,7 @@ private:
 	friend class Atlas;
 	const Knot* first_;
 	const float* angle_;
+	const double* through_;
 	std::ptrdiff_t stride_;
 	Knot weights_[4];
 	double weight_[4], b_, k_, scale_;

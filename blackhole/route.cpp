@@ -57,13 +57,22 @@ bool Route::solve(const Vec3& x, const Vec3& d, const Atlas& atlas, bool ramp) {
 	const double u = 1 / r, w = -s * speed / std::max(b, 1.0), edge = 1 / atlas.settings().effect_radius;
 	escapes_ = orbit_.turns() || s > 0;
 
-	double way;
-	const int knot = orbit_.before(u, -std::fabs(w), way);
-	// Out from the knot before it, or in to that.
-	const int in = w > 0 ? -1 : 1;
-	const State outward = turned(canonical(knot), u, -std::fabs(w), way);
-	begin_ = {u, w, outward.cosine, in * outward.sine};
-	swept_ = -in * (orbit_.angle(knot) + orbit_.k() * way);
+	const int knot = orbit_.before(u), in = w > 0 ? -1 : 1;
+	// In where it goes out: by symmetry.
+	const bool through = orbit_.turns() && w > 0 && std::fabs(u - edge) < 1e-12 * edge;
+	if (through) {
+		const double angle = orbit_.to_rim(-s * speed);
+		swept_ = 2 * angle;
+		end_ = {edge, -w, 0, 0};
+		turn_far(angle, end_.cosine, end_.sine);
+		begin_ = {u, w, end_.cosine, -end_.sine};
+	} else {
+		// Out from the knot before it, or in to that.
+		const double way = orbit_.way(knot, u, -std::fabs(w));
+		const State outward = turned(canonical(knot), u, -std::fabs(w), way);
+		begin_ = {u, w, outward.cosine, in * outward.sine};
+		swept_ = -in * (orbit_.angle(knot) + orbit_.k() * way);
+	}
 	first_ = w > 0 ? -knot : knot + 1;
 	const Vec3 e1 = u * x, e2 = (1 / (twist * r)) * cross(axis, x);
 	f1_ = begin_.cosine * e1 - begin_.sine * e2;
@@ -72,18 +81,14 @@ bool Route::solve(const Vec3& x, const Vec3& d, const Atlas& atlas, bool ramp) {
 	ramps_ = 0;
 	if (ramp)
 		add_ramp(escapes_ ? edge : -1);
-	if (escapes_) {
+	if (through)
+		last_ = knot;
+	else if (escapes_) {
 		const double slope = orbit_.slope(edge);
-		if (w > 0 && std::fabs(u - edge) < 1e-12 * edge) {
-			// In where it goes out: by symmetry.
-			last_ = knot;
-			end_ = {edge, slope, begin_.cosine, -begin_.sine};
-			swept_ *= 2;
-		} else {
-			last_ = orbit_.before(edge, slope, way);
-			end_ = turned(canonical(last_), edge, slope, way);
-			swept_ += orbit_.angle(last_) + orbit_.k() * way;
-		}
+		last_ = orbit_.before(edge);
+		const double way = orbit_.way(last_, edge, slope);
+		end_ = turned(canonical(last_), edge, slope, way);
+		swept_ += orbit_.angle(last_) + orbit_.k() * way;
 	} else {
 		last_ = -1;
 		end_ = {1, -orbit_.slope(1), 1, 0};
@@ -118,8 +123,7 @@ void Route::add_ramp(double edge) {
 		s += h;
 		from = ramp_[ramps_++] = turned(from, u, w, h);
 	}
-	double way;
-	const int knot = orbit_.before(from.u, -std::fabs(from.w), way);
+	const int knot = orbit_.before(from.u);
 	first_ = from.w > 0 ? -knot : knot + 1;
 }
 

@@ -11,6 +11,15 @@
 
 namespace blackhole {
 
+/// Four pieces of a way in the orbit's plane, each of some chords in a row, in single precision, rounded outward.
+struct Pieces {
+	Four x, y;              ///< where they begin, by the plane's axes
+	Four dx, dy;            ///< from there to where they end: the long chord
+	Four bulge;             ///< no point of the piece is farther from the long chord
+	Four nearest, farthest; ///< to the centre, as a chord's
+	Four length;            ///< of the piece, as of a cubic
+};
+
 class Route {
 public:
 	/// x, d as for Path::solve(), outside the horizon; ramp as for Chords. Returns false where the atlas does not have the ray:
@@ -36,6 +45,14 @@ public:
 	void go_to(Bookmark there);
 	Vec3 tangent(const Mark& mark) const;
 
+	/// How many chords there are.
+	int chords() const { return corners_; }
+	/// The next four pieces of so many chords from the first on, but none beyond the last; how many there are.
+	int pieces(int first, int last, int chords, Pieces& out) const;
+	/// The orbit's plane: unit vectors at right angles.
+	const Vec3& e1() const { return f1_; }
+	const Vec3& e2() const { return f2_; }
+
 private:
 	// u, du/ds along the ray, and the angle from where the orbit's knots are counted.
 	struct State {
@@ -48,6 +65,7 @@ private:
 	Vec3 direction(const State& at) const;
 	double slope(const State& at, Vec2 along) const;
 	void add_ramp(double edge);
+	Knot row(int number) const;
 
 	Charted orbit_;
 	Vec3 start_, f1_, f2_; // axes of the orbit's plane, the angle counted from f1

@@ -27,8 +27,8 @@ std::vector<std::string> names() {
 class Feature : public testing::TestWithParam<std::string> {
 protected:
 	// The feature's picture; twin: without the hole.
-	Picture render(bool twin, const std::string& words = "") {
-		const Rendering run = povray("#include \"" + GetParam() + ".pov\"", 64, 48,
+	Picture render(bool twin, const std::string& words = "", const std::string& more = "") {
+		const Rendering run = povray("#include \"" + GetParam() + ".pov\"\n" + more, 64, 48,
 			std::string("+L" FEATURES " ") + words + (twin ? " Blackhole=off" : ""));
 		EXPECT_FALSE(run.picture.samples.empty()) << run.text;
 		EXPECT_EQ(run.text.find("could not be followed"), std::string::npos);
@@ -100,6 +100,19 @@ TEST_P(Feature, DependsOnNeitherBoundingNorThreads) {
 	for (const char* words : {"-MB", "+BM2", "-UV", "-UL"})
 		EXPECT_TRUE(hole == render(false, words)) << words;
 	EXPECT_LE(differing(hole, render(false, "+WT4"), 0), limit("Threads", 0));
+}
+
+// What rays may hit is found in the plane of their orbit where objects are few, in a tree where they are many: of either no pixel
+// depends, and objects that no ray can hit make them many.
+TEST_P(Feature, IsTheSameWithManyObjects) {
+	const std::string unseen =
+		"#local N = 0; #while (N < 200) sphere { vrotate((3 + N / 10) * x, <0, 37 * N, 23 * N>), 1e-6 no_image "
+		"no_reflection no_shadow photons { pass_through } Put() } #local N = N + 1; #end";
+	const Picture few = render(false);
+	const std::string found = text;
+	const Picture many = render(false, "", unseen);
+	EXPECT_GT(value(text, "method rk4;"), value(found, "method rk4;") + 150) << text;
+	EXPECT_LE(differing(few, many, 0), limit("Many", 0));
 }
 
 // Turned and mirrored as a whole, the picture stays what it was, but for pixels on edges.

@@ -175,7 +175,8 @@ bool Bent_Path::Through(size_t index, VECTOR from, Vec3& direction, Intersection
 		counts.Most_Swept = max(counts.Most_Swept, route.swept());
 		counts.Drift = max(counts.Drift, drift);
 		counts.Drifted += (drift > hole.Tolerance);
-		if(chords && Along(route, index, false, isect, pre, post))
+		const bool flat = chords && !Every_Chord() && bent->holes.Few_Of(index).Few() && bent->cut.Begin(bent->holes.Few_Of(index), route.e1(), route.e2());
+		if(chords && (flat ? Along_Pieces(index, isect, pre, post) : Along(route, index, false, isect, pre, post)))
 			return true;
 		return Ended(hole, route, chords, true, from, direction, isect);
 	}

@@ -2,7 +2,8 @@
 /// A ray through a scene with holes: straight outside the effect spheres, chord after chord inside.
 ///
 /// trace.cpp's hooks hold a Bent_Path in each TraceRay. bentpath.cpp has the way from sphere to sphere,
-/// bentlegs.cpp what happens on each leg of it, bentsearch.cpp how hits are found, bentvolume.cpp what fills the space along it.
+/// bentlegs.cpp what happens on each leg of it, bentsearch.cpp how hits are found, bentpieces.cpp how sooner where objects are few,
+/// bentvolume.cpp what fills the space along it.
 #ifndef POVRAY_BENTPATH_H
 #define POVRAY_BENTPATH_H
 
@@ -72,6 +73,11 @@ class Bent_Path
 		template<typename Walk> bool Along(Walk& walk, size_t hole, bool emerges, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
 		template<typename Walk> bool Along_Chords(Walk& walk, size_t hole, bool emerges, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
 		template<typename Walk> bool Along_Arcs(Walk& walk, size_t hole, int chords, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
+		/// The same of a Route whose plane cuts few objects: pieces of so many chords, four at a time. False if nothing is hit.
+		bool Along_Pieces(size_t hole, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
+		bool Along_Pieces(size_t hole, int first, int last, int chords, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
+		/// Whether all chords count, not hits alone.
+		bool Every_Chord() const;
 		void Skip(int chords, DBL length);
 		template<typename Walk> bool Along_Chord(const Walk& walk, const blackhole::Chord& marks, const Scene_Chord& chord, const std::vector<unsigned int>& objects, size_t hole, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post, bool& found);
 		bool Hit_Chord(const Scene_Chord& chord, const blackhole::Vec3& direction, DBL length, const std::vector<unsigned int>& objects, const Blackhole& hole, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);

@@ -8,6 +8,7 @@
 #include "backend/frame.h"
 #include "backend/render/ray.h"
 #include "backend/blackhole/chordtree.h"
+#include "backend/blackhole/planecut.h"
 #include "blackhole/route.h"
 
 namespace pov
@@ -57,6 +58,7 @@ class Bent_Rays
 		Blackhole_Counts& counts;
 		blackhole::Route route;
 		blackhole::Path path; ///< of rays that the atlas does not have
+		Plane_Cut cut;        ///< by the plane of the route in hand
 		std::vector<unsigned int> candidates, fewer, chosen; ///< of the arc, of a part of it, and of the chord in hand
 		std::vector<Bent_Segment *> pool; ///< states, by depth of recursion
 		size_t depth;

@@ -167,17 +167,6 @@ bool Bent_Path::Along_Chord(const Walk& walk, const blackhole::Chord& marks, con
 	return false;
 }
 
-// A chord, or an arc, as the scene has it.
-template<typename Piece>
-static void In_Scene(const Piece& piece, DBL bulge, const Blackhole& hole, Scene_Chord& chord)
-{
-	hole.To_Scene(piece.from, chord.from);
-	hole.To_Scene(piece.to, chord.to);
-	chord.bulge = bulge * hole.Radius;
-	chord.nearest = piece.nearest;
-	chord.farthest = piece.farthest;
-}
-
 // Along every chord. False if nothing is hit; state->end may be set. emerges: from inside the horizon.
 template<typename Walk>
 bool Bent_Path::Along_Chords(Walk& walk, size_t index, bool emerges, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post)
@@ -264,11 +253,11 @@ bool Bent_Path::Along(Walk& walk, size_t index, bool emerges, Intersection& isec
 {
 	// As many chords as turn by a third of a radian or so; a single one is no arc.
 	const int in_arc = min(32, int(0.25 / sqrt(bent->holes.Holes()[index]->Tolerance)));
-	const bool every = (in_arc < 2) || volume || (bent->recorder != NULL) || (state->budget < BOUND_HUGE) || emerges;
-	return every ? Along_Chords(walk, index, emerges, isect, pre, post) : Along_Arcs(walk, index, in_arc, isect, pre, post);
+	return (in_arc < 2) || Every_Chord() || emerges ? Along_Chords(walk, index, emerges, isect, pre, post) : Along_Arcs(walk, index, in_arc, isect, pre, post);
 }
 
 template bool Bent_Path::Along(blackhole::Chords& walk, size_t index, bool emerges, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
 template bool Bent_Path::Along(blackhole::Route& walk, size_t index, bool emerges, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post);
+template bool Bent_Path::Along_Chord(const blackhole::Route& walk, const blackhole::Chord& marks, const Scene_Chord& chord, const std::vector<unsigned int>& objects, size_t index, Intersection& isect, const RayObjectCondition& pre, const RayObjectCondition& post, bool& found);
 
 }

@@ -82,6 +82,7 @@ std::string Blackholes::Prepare(const SceneData& scene, TraceThreadData *thread,
 	for(size_t h = 0; h < holes.size(); h++)
 	{
 		radii.push_back(tree.Radii_Around(*holes[h]));
+		few.push_back(Few_Objects(tree, radii[h], *holes[h]));
 		atlases.push_back(blackhole::Atlas(holes[h]->Settings()));
 		for(size_t i = 0; i < inside.size(); i++)
 			inside[i] = inside[i] || (radii[h][i].second * holes[h]->Radius < holes[h]->Reach());

@@ -16,6 +16,7 @@
 #include "backend/blackhole/chordtree.h"
 #include "backend/blackhole/counts.h"
 #include "backend/blackhole/overrides.h"
+#include "backend/blackhole/planecut.h"
 #include "backend/blackhole/reach.h"
 #include "blackhole/atlas.h"
 
@@ -64,6 +65,9 @@ class Blackholes
 		const Chord_Tree& Tree() const { return tree; }
 		const std::vector<std::pair<DBL, DBL> >& Radii_Of(size_t hole) const { return radii[hole]; }
 
+		/// The objects around a hole, for rays in a plane through its centre.
+		const Few_Objects& Few_Of(size_t hole) const { return few[hole]; }
+
 		/// The objects that reach out of all effect spheres: what a straight leg may hit.
 		const std::vector<unsigned int>& Outside() const { return outside; }
 
@@ -102,6 +106,7 @@ class Blackholes
 		std::vector<blackhole::Atlas> atlases;
 		Chord_Tree tree;
 		std::vector<std::vector<std::pair<DBL, DBL> > > radii;
+		std::vector<Few_Objects> few;
 		std::vector<unsigned int> outside;
 		DBL blind, vague;
 		bool far_objects;

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
-#ifdef __SSE__
-#include <xmmintrin.h>
-#endif
 
 // frame.h must always be the first POV file included (pulls in platform config)
 #include "backend/frame.h"
@@ -18,6 +15,11 @@
 
 namespace pov
 {
+
+using blackhole::greater;
+using blackhole::lesser;
+using blackhole::not_greater;
+using blackhole::Vec3;
 
 // What single precision may lose of a number of this size, several times over.
 static DBL Rounding(DBL size)
@@ -123,6 +125,23 @@ Chord_Tree::Radii_List Chord_Tree::Radii_Around(const Blackhole& hole) const
 	return radii;
 }
 
+bool Chord_Tree::Ball(unsigned int object, const Blackhole& hole, Vec3& center, DBL& radius) const
+{
+	if(std::find(endless.begin(), endless.end(), object) != endless.end())
+		return false;
+	const Scene_Box& box = boxes[object];
+	VECTOR middle;
+	DBL square = 0.0;
+	for(int i = 0; i < 3; i++)
+	{
+		middle[i] = 0.5 * (box.lo[i] + box.hi[i]);
+		square += Sqr(0.5 * (box.hi[i] - box.lo[i]));
+	}
+	center = hole.To_Hole(middle);
+	radius = sqrt(square) / hole.Radius;
+	return true;
+}
+
 static DBL Height(const VECTOR p, const Plane *plane)
 {
 	DBL h;
@@ -130,25 +149,13 @@ static DBL Height(const VECTOR p, const Plane *plane)
 	return h + plane->Distance;
 }
 
-// Four at a time. SSE is part of every x86-64; compilers do not find these instructions by themselves.
-#ifdef __SSE__
-#define Greater(a, b) _mm_max_ps(a, b)
-#define Lesser(a, b) _mm_min_ps(a, b)
-#define No_Greater(a, b) _mm_movemask_ps(_mm_cmple_ps(a, b))
-#else
-typedef float Any_Four __attribute__((vector_size(16)));
-static inline Any_Four Greater(Any_Four a, Any_Four b) { return a > b ? a : b; }
-static inline Any_Four Lesser(Any_Four a, Any_Four b) { return a < b ? a : b; }
-static inline int No_Greater(Any_Four a, Any_Four b) { return (a[0] <= b[0]) | (a[1] <= b[1]) << 1 | (a[2] <= b[2]) << 2 | (a[3] <= b[3]) << 3; }
-#endif
-
 static inline bool In_Shell(const Scene_Chord& c, const std::pair<DBL, DBL>& shell)
 {
 	return (c.nearest <= shell.second) && (shell.first <= c.farthest);
 }
 
 // Whether a chord, or an arc, may meet an object: a plane not if all of it is well on one side.
-inline bool Chord_Tree::May_Hit(const Scene_Chord& c, const Radii_List& radii, unsigned int object) const
+bool Chord_Tree::May_Hit(const Scene_Chord& c, const Radii_List& radii, unsigned int object) const
 {
 	if(!In_Shell(c, radii[object]))
 		return false;
@@ -200,10 +207,10 @@ void Chord_Tree::Find(const Scene_Chord& c, const Radii_List& radii, Object_List
 		Four in = { 0, 0, 0, 0 }, beyond = { 1, 1, 1, 1 };
 		for(int i = 0; i < 3; i++)
 		{
-			in = Greater((node.side[sign[i]][i] - near_side[i]) * per[i], in);
-			beyond = Lesser((node.side[1 - sign[i]][i] - far_side[i]) * per[i], beyond);
+			in = greater((node.side[sign[i]][i] - near_side[i]) * per[i], in);
+			beyond = lesser((node.side[1 - sign[i]][i] - far_side[i]) * per[i], beyond);
 		}
-		for(int meets = No_Greater(in, beyond); meets != 0; meets &= meets - 1)
+		for(int meets = not_greater(in, beyond); meets != 0; meets &= meets - 1)
 		{
 			const int child = node.child[__builtin_ctz(meets)];
 			if(child > 0)

@@ -13,11 +13,23 @@
 #include "backend/blackhole/reach.h"
 #include "backend/blackhole/solidbounds.h"
 #include "blackhole/chords.h"
+#include "blackhole/four.h"
 
 namespace pov
 {
 
 class Plane;
+
+/// A blackhole::Chord, or an Arc with its bulge, as the scene has it.
+template<typename Piece>
+inline void In_Scene(const Piece& piece, DBL bulge, const Blackhole& hole, Scene_Chord& chord)
+{
+	hole.To_Scene(piece.from, chord.from);
+	hole.To_Scene(piece.to, chord.to);
+	chord.bulge = bulge * hole.Radius;
+	chord.nearest = piece.nearest;
+	chord.farthest = piece.farthest;
+}
 
 class Chord_Tree
 {
@@ -32,13 +44,17 @@ class Chord_Tree
 		bool Empty() const { return objects.empty(); }
 		ObjectPtr Object(unsigned int i) const { return objects[i]; }
 		size_t Count() const { return objects.size(); }
+		DBL Margin() const { return margin; }
+		/// A sphere about an object, wider by the margin, in Schwarzschild radii from the hole. False if the object has no useful bounds.
+		bool Ball(unsigned int object, const Blackhole& hole, blackhole::Vec3& center, DBL& radius) const;
 
 		/// The objects that a chord, or an arc, may hit, in ascending order.
 		void Find(const Scene_Chord& chord, const Radii_List& radii, Object_List& out) const;
 		/// Of these objects those that it may hit.
 		void Choose(const Scene_Chord& chord, const Radii_List& radii, const Object_List& of, Object_List& out) const;
+		bool May_Hit(const Scene_Chord& chord, const Radii_List& radii, unsigned int object) const;
 	private:
-		typedef float Four __attribute__((vector_size(16)));
+		typedef blackhole::Four Four;
 		/// The boxes of four children, their lower and upper sides; a child > 0 is a node, < 0 the object ~child, 0 nothing.
 		struct Node
 		{
@@ -46,7 +62,6 @@ class Chord_Tree
 			int child[4];
 		};
 		int Split(std::vector<int>& list, size_t from, size_t to);
-		bool May_Hit(const Scene_Chord& chord, const Radii_List& radii, unsigned int object) const;
 
 		DBL margin;
 		std::vector<ObjectPtr> objects;
