@@ -64,10 +64,10 @@ wait(lambda: server.job(number)["strips_done"] == 3, "some strips", worker, WORK
 watch = subprocess.Popen([BIN + "/bhfarm", "watch", "--server", server.url, str(number)], env=ENV, stderr=subprocess.PIPE, text=True)
 spool_disk.fill()
 gate.let(2)
-wait(lambda: server.job(number)["doing"].startswith("waiting: "), "it to say what it waits for", worker, WORK + "/server.log")
+wait(lambda: server.job(number)["doing"].startswith("waiting: ") and any(f in server.job(number)["doing"] for f in FULL),
+     "it to say what it waits for", worker, WORK + "/server.log")
 time.sleep(1) # for more tries
 assert server.job(number)["strips_done"] == 3, server.job(number)
-assert server.job(number)["doing"].startswith("waiting: ") and any(f in server.job(number)["doing"] for f in FULL), server.job(number)
 line = watch.stderr.readline()
 watch.kill()
 assert "waiting: " in line and any(f in line for f in FULL), line

@@ -95,7 +95,7 @@ class Lab:
     def start(self):
         s = self.server
         self.starts += 1
-        s.process = start("bhfarm-server", "--listen", "127.0.0.1:%d" % s.port, "--spool", s.spool, *s.words, log=s.log)
+        s.process = start("bhfarm-server", "--listen", "%s:%d" % (s.host, s.port), "--spool", s.spool, *s.words, log=s.log)
 
     def mend(self):
         """Likewise; on a full disk it cannot start, says so in one line, and is started again."""

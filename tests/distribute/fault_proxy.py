@@ -8,8 +8,8 @@ import threading
 
 
 class Proxy:
-    def __init__(self, seed, where):
-        self.random, self.where, self.mood, self.port = random.Random(seed), where, "calm", 0
+    def __init__(self, seed, to):
+        self.random, self.to, self.mood, self.port = random.Random(seed), to, "calm", 0
         self.cuts = 0
         self.hello = {} # what a worker said of itself
         ready = threading.Event()
@@ -28,7 +28,7 @@ class Proxy:
         try:
             if self.mood == "dead":
                 raise ConnectionError
-            to_reader, to_writer = await asyncio.open_connection("127.0.0.1", self.where())
+            to_reader, to_writer = await asyncio.open_connection(self.to.host, self.to.port)
         except (OSError, ValueError):
             writer.close()
             return

@@ -110,7 +110,7 @@ class Rogue:
         """A body that ends in the middle, and one that goes on for ever after its answer."""
         if task := self.take():
             good = self.render(task, False)
-            s = socket.create_connection(("127.0.0.1", self.server.port), timeout=5)
+            s = socket.create_connection((self.server.host, self.server.port), timeout=5)
             s.sendall(b"PUT /v1/leases/%d/strip?sha256=%s HTTP/1.1\r\nHost: x\r\nContent-Length: %d\r\n\r\n" % (task["lease"], sha(good).encode(), len(good) + 1000) + good)
             time.sleep(0.05 * self.random.random())
             s.close()

@@ -9,7 +9,7 @@ import sys
 import time
 import urllib.error
 
-from farm import BIN, WORK, bare, bhfarm, frames_in, pictures, povray, same, scene, wait
+from farm import BIN, PATIENCE, WORK, bare, bhfarm, frames_in, pictures, povray, same, scene, wait
 import fault_check
 from fault_lab import Lab, Worker
 from fault_proxy import Proxy
@@ -64,7 +64,7 @@ class Run:
         self.real = seed % 10 == 0
         self.seed, self.counts = seed, {}
         self.lab = Lab()
-        self.proxy = Proxy(seed, lambda: self.lab.server.port)
+        self.proxy = Proxy(seed, self.lab.server)
         self.reference = WORK + "/reference"
         os.makedirs(self.reference)
         if self.real:
@@ -153,7 +153,7 @@ class Run:
                 assert job.get("stage", "running") == "running" or job["stage"] == "done", job
                 if job.get("stage") == "done":
                     return now
-                assert now < 200, "not done: %s\n%s" % (job, self.said()[-3000:])
+                assert now < PATIENCE, "not done: %s\n%s" % (job, self.said()[-3000:])
             if int(now) > shown and "FAULTS_SHOW" in os.environ:
                 print("%3d s, %s: %s" % (now, self.proxy.mood, self.state()), file=sys.stderr, flush=True)
             shown = int(now)
@@ -177,7 +177,7 @@ class Run:
             worker.freeze(False)
             worker.kill(1e9)
         self.lab.server.process.terminate()
-        assert self.lab.server.process.wait(30) == 0
+        assert self.lab.server.process.wait(PATIENCE) == 0
         fault_check.check_done(self.lab.server.spool, self.job, SPEC, self.truth)
 
 

@@ -10,7 +10,7 @@ import subprocess
 import sys
 import time
 
-ONE_AT_MOST = 300 # seconds
+ONE_AT_MOST = 900 # seconds
 
 
 def once(seed):

@@ -13,7 +13,7 @@ import sys
 import threading
 import time
 
-from farm import BIN, ENV, FENCED, WORK, Server, bhfarm, include_folder, patiently, start, wait
+from farm import BIN, ENV, FENCED, PATIENCE, WORK, Server, bhfarm, include_folder, patiently, start, wait
 from hand import JOB, bundle_of, sha
 
 if not FENCED:
@@ -54,6 +54,7 @@ class Desk(http.server.BaseHTTPRequestHandler):
     """A server that lends what a test puts in `tasks` and keeps what comes back in `results`: no second tries, no pauses."""
     protocol_version = "HTTP/1.1"
     tasks, results, bundles, files = queue.Queue(), {}, {}, {}
+    known, left = set(), set() # workers by their ids; those that have left may still have asked
 
     def log_message(self, *_):
         pass
@@ -75,12 +76,18 @@ class Desk(http.server.BaseHTTPRequestHandler):
     def do_POST(self):
         body = self.rfile.read(int(self.headers.get("Content-Length") or 0))
         if self.path == "/v1/workers":
+            self.known.add(json.loads(body)["id"])
             self.reply({"protocol": 1, "lease_seconds": 20})
         elif self.path.endswith("/take"):
+            who = self.path.split("/")[3]
             try:
-                self.reply(self.tasks.get(timeout=POLL))
+                task = self.tasks.get(timeout=0 if who in self.left else POLL)
             except queue.Empty:
-                self.reply()
+                return self.reply()
+            if who not in self.left:
+                return self.reply(task)
+            self.tasks.put(task)
+            self.reply()
         elif self.path.endswith("/heartbeat"):
             self.reply({"drop": [], "draining": False})
         else:
@@ -129,8 +136,8 @@ def worker(name, *words):
 
 def leave(process):
     process.terminate()
-    assert process.wait(60) == 0
-    time.sleep(2 * POLL) # polls of one that has gone would swallow the next one's strips
+    assert process.wait(PATIENCE) == 0
+    Desk.left |= Desk.known # they asked for strips until then, and hear no answer: a strip would be lost
 
 
 # Somebody else's job, whose files lie in the same worker's cache.
@@ -261,11 +268,11 @@ for name, text in (("missing", None), ("broken", "#!/bin/bash\necho 'bwrap: No p
         put(folder + "/bwrap", text)
         os.chmod(folder + "/bwrap", 0o755)
     there = dict(ENV, PATH=folder)
-    done = subprocess.run([BIN + "/bhfarm-worker", "--server", URL_OF_SERVER], env=there, capture_output=True, text=True, timeout=60)
+    done = subprocess.run([BIN + "/bhfarm-worker", "--server", URL_OF_SERVER], env=there, capture_output=True, text=True, timeout=PATIENCE)
     assert done.returncode == 1 and done.stderr.count("\n") == 1 and "--no-sandbox" in done.stderr and "bubblewrap" in done.stderr, done.stderr
     for words, said in (([], 1), (["--no-sandbox"], 0)):
         put(WORK + "/own.pov", HEAD)
-        done = subprocess.run([BIN + "/bhfarm", "render", "own.pov", "+W16", "+H12", *words], env=there, cwd=WORK, capture_output=True, text=True, timeout=120)
+        done = subprocess.run([BIN + "/bhfarm", "render", "own.pov", "+W16", "+H12", *words], env=there, cwd=WORK, capture_output=True, text=True, timeout=PATIENCE)
         assert done.returncode == 0 and done.stderr.count("\n") == said and done.stderr.count("without a fence") == said, done.stderr
 # One's own scene, tried out: it reads what its owner reads, and changes nothing.
 put(WORK + "/own.pov", HEAD + '#fopen F "made.inc" write\n#write (F, "#declare Y = 5;")\n#fclose F\n#include "made.inc"\n#include "home/secret/s.inc"\n')

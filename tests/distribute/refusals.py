@@ -7,7 +7,7 @@ import subprocess
 import time
 
 from authority import authority, openssl
-from farm import BIN, ENV, WORK, Server, bhfarm, scene
+from farm import BIN, ENV, PATIENCE, WORK, Server, bhfarm, scene
 
 folder = WORK + "/scene"
 ini = scene(folder, frames=5)
@@ -15,7 +15,7 @@ ini = scene(folder, frames=5)
 
 def refused(text, *words, **more):
     """One line with the text in it."""
-    done = subprocess.run([BIN + "/" + words[0], *words[1:]], env=dict(ENV, **more), cwd=folder, capture_output=True, text=True, errors="replace", timeout=60)
+    done = subprocess.run([BIN + "/" + words[0], *words[1:]], env=dict(ENV, **more), cwd=folder, capture_output=True, text=True, errors="replace", timeout=PATIENCE)
     lines = done.stderr.strip().split("\n")
     assert done.returncode == 1 and len(lines) == 1 and re.search(text, lines[0]) and not done.stdout, (words, done.returncode, done.stdout, done.stderr)
 
@@ -36,7 +36,7 @@ refused("--lease is '0'", *serve, "--lease", "0")
 for address, text in (("nonsense", "the port in --listen ADDR:PORT is ''"), ("127.0.0.1:99999", "the port in --listen ADDR:PORT is '99999'"), ("127.0.0.1:x", "is 'x'"),
                       ("no.such.host.invalid:7700", "give a --token-file"), ("0.0.0.0:0", "give a --token-file")):
     refused(text, "bhfarm-server", "--listen", address, "--spool", WORK + "/spool")
-refused("cannot listen on 127.0.0.1:%d: Address already in use" % server.port, "bhfarm-server", "--listen", "127.0.0.1:%d" % server.port, "--spool", WORK + "/spool")
+refused("cannot listen on %s:%d: Address already in use" % (server.host, server.port), "bhfarm-server", "--listen", "%s:%d" % (server.host, server.port), "--spool", WORK + "/spool")
 refused("another bhfarm-server has the spool " + server.spool, *serve[:3], "--spool", server.spool)
 refused("cannot make the spool /proc/nosuch", *serve[:3], "--spool", "/proc/nosuch")
 refused("cannot read /nosuch", *serve, "--token-file", "/nosuch")

@@ -4,7 +4,7 @@ import os
 import subprocess
 
 from authority import authority, certify
-from farm import BIN, ENV, WORK, Server, bhfarm, new_token, povray, same, scene
+from farm import BIN, ENV, PATIENCE, WORK, Server, bhfarm, new_token, povray, same, scene
 
 ini = scene(WORK + "/scene")
 os.makedirs(WORK + "/reference")
@@ -21,7 +21,7 @@ ENV["BHFARM_TOKEN_FILE"] = WORK + "/token"
 
 
 def refused(words, text, **changes):
-    done = subprocess.run([BIN + "/" + words[0], *words[1:]], env=dict(ENV, **changes), capture_output=True, text=True, timeout=60)
+    done = subprocess.run([BIN + "/" + words[0], *words[1:]], env=dict(ENV, **changes), capture_output=True, text=True, timeout=PATIENCE)
     lines = done.stderr.strip().split("\n")
     assert done.returncode == 1 and len(lines) == 1 and text in lines[0], (words, done.returncode, done.stderr)
 
@@ -48,5 +48,5 @@ refused(["bhfarm-worker", "--server", server.url, "--no-sandbox", "--povray", WO
 refused(["bhfarm-worker", "--server", server.url, "--povray", WORK + "/version"], "cannot be fenced; give povray itself, or say --no-sandbox")
 assert bhfarm("workers", server=server).stdout.count("good") == 1
 bhfarm("drain", "good", server=server)
-assert worker.wait(60) == 0
+assert worker.wait(PATIENCE) == 0
 print("tokens and TLS: in with both, refused without")

@@ -7,18 +7,18 @@ import struct
 import time
 import urllib.parse
 
-from farm import ENV, WORK, Server, bhfarm, new_token, pixels, wait
+from farm import ENV, PATIENCE, WORK, Server, bhfarm, new_token, pixels, wait
 from hand import BUNDLE, JOB, bring, png, send
 
 TOKEN = new_token()
-server = Server("--token-file", WORK + "/token", "--check-every", "0")
+server = Server("--token-file", WORK + "/token", "--check-every", "0", "--lease", "3600") # nobody here sends heartbeats
 ask = functools.partial(server.ask, token=TOKEN)
 
 
 class Stream:
     """Server-sent events, read as they come."""
     def __init__(self, of):
-        self.connection = http.client.HTTPConnection("127.0.0.1", of.port, timeout=30)
+        self.connection = http.client.HTTPConnection(of.host, of.port, timeout=PATIENCE)
         self.connection.request("GET", "/v1/events", headers={"Authorization": "Bearer " + TOKEN})
         self.answer = self.connection.getresponse()
         assert self.answer.status == 200 and self.answer.getheader("Content-Type") == "text/event-stream"
@@ -31,7 +31,7 @@ class Stream:
                 return json.loads(line[6:])
 
     def until(self, condition):
-        end = time.monotonic() + 60
+        end = time.monotonic() + PATIENCE
         while True:
             piece = self.next()
             assert time.monotonic() < end, "the stream does not tell"
@@ -47,14 +47,14 @@ stream = Stream(server)
 first = stream.next()
 assert first["event"] == "all" and first["jobs"] == [] and first["workers"] == [], first
 number = ask("/v1/jobs", job)[1]["job"]
-piece = stream.next()
+piece = stream.until(lambda p: p.get("jobs"))
 assert piece["jobs"] == [{k: v for k, v in ask("/v1/jobs/%d" % number)[1].items() if k != "spec"}] and piece["jobs"][0]["format"] == "png", piece
 for name in ("one-worker", "two-worker"):
     assert ask("/v1/workers", {"id": name, "name": name, "slots": 2})[0] == 201
 
 
 def take(who="one-worker"):
-    status, task = ask("/v1/workers/%s/take" % who, {"wait": 5})
+    status, task = ask("/v1/workers/%s/take" % who, {"wait": 60})
     assert status == 200
     return task
 
@@ -98,7 +98,7 @@ ask("/v1/leases/%d/return" % task["lease"], method="POST", raw=b"")
 follow(1, "w")
 assert ask("/v1/jobs/%d/strips" % number)[1]["strips"] == "s" + "w" * 14
 ask("/v1/workers/two-worker/drain", method="POST", raw=b"")
-assert [w["draining"] for w in stream.until(lambda p: p["workers"])["workers"]] == [True]
+assert [w["draining"] for w in stream.until(lambda p: p.get("workers"))["workers"]] == [True]
 ask("/v1/workers/two-worker", method="DELETE")
 assert stream.until(lambda p: p.get("gone"))["gone"] == ["two-worker"]
 
@@ -151,14 +151,17 @@ expect(3, 320, {0, 1, 2, 3, 4})
 expect(5, 25, set())
 report(task)
 expect(5, 31, {0})
-connection = http.client.HTTPConnection("127.0.0.1", server.port, timeout=30)
+at = server
 
 
 def plain(method, path, body=None, **headers):
     """Status, headers and body, without following anything; underscores in names are dashes."""
+    connection = http.client.HTTPConnection(at.host, at.port, timeout=PATIENCE)
     connection.request(method, path, body=body, headers={k.replace("_", "-"): v for k, v in headers.items()})
     answer = connection.getresponse()
-    return answer.status, dict(answer.getheaders()), answer.read()
+    body = answer.read()
+    connection.close()
+    return answer.status, dict(answer.getheaders()), body
 
 
 BEARER = {"Authorization": "Bearer " + TOKEN}
@@ -194,7 +197,7 @@ for kind in ("png", "exr"):
 differ = max(abs(x - y) for p, q in zip(shown[0][2], shown[1][2]) for x, y in zip(p, q))
 assert shown[0][:2] == shown[1][:2] == (40, 48) and differ <= 1, differ
 worker.terminate()
-worker.wait(30)
+worker.wait(PATIENCE)
 
 # The door for browsers.
 OWN = {"Origin": server.url}
@@ -228,12 +231,11 @@ assert plain("GET", "/v1/jobs", Cookie=parts[0][:-1])[0] == 401 and plain("GET",
 assert plain("GET", "/v1/jobs", Cookie=parts[0].split("=")[0] + "=" + TOKEN)[0] == 401
 status, head, _ = plain("POST", "/sign-out", "", **cookie, **OWN)
 assert status == 303 and "Max-Age=0" in head["Set-Cookie"] and plain("GET", "/v1/jobs", **cookie)[0] == 401
-connection.close()
 
 # Without tokens whoever is on this machine comes in, but no web page of somebody else's.
 ENV.pop("BHFARM_TOKEN_FILE")
 open_one = Server()
-connection = http.client.HTTPConnection("127.0.0.1", open_one.port, timeout=30)
+at = open_one
 there = "/v1/bundles", json.dumps(BUNDLE)
 assert plain("POST", *there)[0] == 201 and plain("POST", *there, Origin=open_one.url)[0] == 201
 assert plain("POST", *there, Origin="http://evil.example")[0] == 403 and plain("POST", *there, Sec_Fetch_Site="cross-site")[0] == 403

@@ -9,7 +9,7 @@ import socket
 import sys
 import time
 
-from farm import WORK, Server, new_token
+from farm import PATIENCE, WORK, Server, new_token
 from hand import BUNDLE, BUNDLE_ID, HELLO, JOB, ME, SCENE, give, sha
 
 SECONDS = float(sys.argv[2]) if len(sys.argv) > 2 else 6
@@ -65,7 +65,7 @@ def damaged(data):
 
 def answered(data):
     """What came back before the connection closed."""
-    with socket.create_connection(("127.0.0.1", server.port), timeout=20) as s:
+    with socket.create_connection((server.host, server.port), timeout=PATIENCE) as s:
         got = b""
         try:
             s.sendall(data)

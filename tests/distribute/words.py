@@ -4,7 +4,7 @@ import os
 import random
 import subprocess
 
-from farm import BIN, ENV, WORK, Server, bhfarm, include_folder, scene
+from farm import BIN, ENV, PATIENCE, WORK, Server, bhfarm, include_folder, patiently, scene
 
 folder = WORK + "/scene"
 scene(folder)
@@ -47,8 +47,9 @@ for round_ in range(40):
     with open(WORK + "/none.ini", "w") as f:
         f.write("Verbose=Off\n")
     written = folder + "/written.ini"
-    subprocess.run([BIN + "/povray", "odd.ini", *words, "+GIwritten.ini", "-D", "-F", "+L" + include_folder(), "+SR1000"], cwd=folder, capture_output=True,
-                   timeout=60, env=dict(ENV, POVINI=WORK + "/none.ini"))
+    asked = [BIN + "/povray", "odd.ini", *words, "+GIwritten.ini", "-D", "-F", "+L" + include_folder(), "+SR1000"]
+    patiently(lambda: subprocess.run(asked, cwd=folder, capture_output=True, text=True, errors="replace", timeout=PATIENCE, env=dict(ENV, POVINI=WORK + "/none.ini")),
+              lambda run: run.stderr)
     theirs = settings(open(written).read())
     os.remove(written)
     done = bhfarm("submit", "odd.ini", *words, "--video", "none", server=server, cwd=folder, good=False)

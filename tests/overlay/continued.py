@@ -62,7 +62,7 @@ def interrupt(process):
 
 
 def stop(program, scene, words, how, folder):
-	"""The exit code of a render stopped when a third of it was there."""
+	"""The exit code of a render stopped when a third of it was there; 0 if it was not stopped."""
 	state = folder + "/scene.pov-state"
 	process = povray.start(program, scene, words, folder)
 	# A pixel takes 20 bytes there; it is written when a block is done.
@@ -72,15 +72,16 @@ def stop(program, scene, words, how, folder):
 		interrupt(process)
 	else:
 		process.send_signal(how)
-	return povray.finish(process)
+	code = povray.finish(process)
+	return 0 if povray.NOT_STARTED in povray.said(folder) else code
 
 
 def stopped(program, scene, words, how):
 	"""The picture of a render stopped and continued, and how many pixels the second half traced."""
-	for _ in range(10):
+	for _ in range(30):
 		with tempfile.TemporaryDirectory() as folder:
 			code = stop(program, scene, words, how, folder)
-			if code == 0: # it was done before this busy machine let it be stopped: once more
+			if code == 0: # it was done before this busy machine let it be stopped, or did not begin: once more
 				continue
 			expect(code == (2 if how == signal.SIGINT else -how), words, "stopped by", how.name, "exits with", code)
 			state = folder + "/scene.pov-state"

@@ -36,7 +36,11 @@ def start(povray, scene, words, folder, **more):
 			stdout=out, stderr=subprocess.STDOUT)
 
 
-def finish(process, seconds=60):
+PATIENCE = 600 # seconds: what hangs comes to that, and no machine that is merely slow or busy
+NOT_STARTED = "Timed out waiting for worker thread startup" # what POV-Ray says where a machine is so busy that a thread did not begin in three seconds
+
+
+def finish(process, seconds=PATIENCE):
 	"""The exit code; 999 if it had to be killed."""
 	try:
 		return process.wait(seconds)
@@ -47,10 +51,10 @@ def finish(process, seconds=60):
 
 
 def patiently(render, said):
-	"""What render() returns, given once more, up to four times, where povray had nothing to say but that the machine is too busy; said(that) is what it said."""
-	for _ in range(5):
+	"""What render() returns, given once more, up to 19 times, where povray had nothing to say but that the machine is too busy; said(that) is what it said."""
+	for _ in range(20):
 		done = render()
-		if "Timed out waiting for worker thread startup" not in said(done):
+		if NOT_STARTED not in said(done):
 			break
 	return done
 

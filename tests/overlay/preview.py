@@ -86,7 +86,7 @@ class Server:
 		self.process.wait()
 
 
-def until(what, seconds=20):
+def until(what, seconds=povray.PATIENCE):
 	end = time.time() + seconds
 	while time.time() < end:
 		found = what()
@@ -118,7 +118,7 @@ class Preview:
 		return self.process.poll() is None
 
 	def end(self):
-		code = povray.finish(self.process, 10)
+		code = povray.finish(self.process)
 		picture = povray.picture(self.folder.name)
 		self.folder.cleanup()
 		return code, picture
@@ -191,7 +191,7 @@ def check(server, program):
 		ends = []
 		for p, s in ((program, SCENE + BLACKHOLE), (STOCK, SCENE)):
 			with tempfile.TemporaryDirectory() as folder:
-				code = povray.finish(povray.start(p, s, f"{words} +WT1 +FN +W{WIDTH} +H{HEIGHT}", folder, DISPLAY="", **more), 20)
+				code = povray.finish(povray.start(p, s, f"{words} +WT1 +FN +W{WIDTH} +H{HEIGHT}", folder, DISPLAY="", **more))
 				ends.append((code, [line for line in povray.said(folder).splitlines() if "SDL" in line], povray.picture(folder) is not None))
 		print(words, "without a server", more, ends[0])
 		expect(ends[0] == ends[1] == (0, ends[0][1], True) and bool(ends[0][1]) == bool(more), "it ends otherwise than Debian's:", ends)

@@ -74,10 +74,10 @@ Rendering povray(const std::string& scene, int width, int height, const std::str
 	std::ofstream(run.folder + "/scene.pov") << "#version 3.7; global_settings { assumed_gamma 1 }\n" << scene << "\n";
 	std::ostringstream command;
 	// HOME: the user's own povray.ini has no say in a test.
-	command << "cd " << name << " && HOME=" << name << " timeout 250 " << POVRAY
+	command << "cd " << name << " && HOME=" << name << " timeout 600 " << POVRAY
 			<< " +Iscene.pov +Oscene.ppm +FP16 File_Gamma=1 -D -A +WT1 +L" << INCLUDES << " +L" << OUR_INCLUDES << " +W" << width
 			<< " +H" << height << " " << words << " >out 2>&1";
-	for (int tries = 0; tries < 5; tries++) {
+	for (int tries = 0; tries < 20; tries++) {
 		const int status = std::system(command.str().c_str());
 		run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128;
 		std::ifstream out(run.folder + "/out");

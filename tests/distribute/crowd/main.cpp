@@ -23,6 +23,7 @@ const std::vector<farm::Option> options = {
 	{"--workers", "N", "of one slot each", "200"},
 	{"--strip-ms", "MS", "what a strip takes, a tenth more or less", "10000"},
 	{"--seconds", "S", "how long it goes on", "60"},
+	{"--strips", "N", "it ends when so many were taken in, if that is sooner; 0: it does not", "0"},
 	{"--ramp", "S", "the workers come within so many seconds", "5"},
 	{"--lean", "",
 		"a worker keeps one connection, not three: heartbeats go where strips are asked for, and the one for sending closes", ""},
@@ -185,7 +186,9 @@ int run(const farm::Arguments& a) {
 	set.strip_hash = farm::sha256(set.strip);
 	constexpr int strips_per_frame = 8;
 	// Twice as many as can be rendered, so that the end is not reached.
-	const int frames = static_cast<int>(2 * set.workers * (set.seconds / set.strip_seconds + 2) / strips_per_frame) + 1;
+	const int enough = static_cast<int>(a.number("--strips", 0, 1000000));
+	const double most = enough ? enough + 4 * set.workers : 2 * set.workers * (set.seconds / set.strip_seconds + 2);
+	const int frames = static_cast<int>(most / strips_per_frame) + 1;
 
 	asio::io_context context(1);
 	std::unique_ptr<Crowd> crowd;
@@ -196,8 +199,12 @@ int run(const farm::Arguments& a) {
 		for (int i = 0; i < set.workers; ++i)
 			crowd->spawn(crowd->work(i));
 		crowd->spawn(crowd->ask_status(0.001 * static_cast<double>(a.number("--status-ms", 1, 1000000))));
-		asio::steady_timer timer(context, std::chrono::milliseconds(static_cast<long>(1000 * set.seconds)));
-		co_await timer.async_wait(asio::use_awaitable);
+		const auto end = Clock::now() + std::chrono::duration<double>(set.seconds);
+		asio::steady_timer timer(context);
+		while (Clock::now() < end && (!enough || static_cast<int>(crowd->figures.accepted) < enough)) {
+			timer.expires_after(std::chrono::milliseconds(20));
+			co_await timer.async_wait(asio::use_awaitable);
+		}
 		context.stop();
 	};
 	asio::co_spawn(context, begin(), [](std::exception_ptr e) {
