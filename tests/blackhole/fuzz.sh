@@ -22,6 +22,6 @@ if [ ! -x "$fuzz" ] || [ -n "$(find blackhole tests/blackhole -newer "$fuzz" -na
 fi
 corpus=()
 [ "$seconds" -le 15 ] || corpus=("$build/fuzz/corpus")
-# A ray takes a millisecond at most, a hundred with the sanitizers: one that takes 20 s does not end.
-exec "$fuzz" -max_total_time="$seconds" -max_len=80 -timeout=20 -error_exitcode=1 -print_final_stats=1 -verbosity=0 \
+# A ray takes a millisecond at most, a hundred with the sanitizers: one that takes 200 s does not end, however busy the machine.
+exec "$fuzz" -max_total_time="$seconds" -max_len=80 -timeout=200 -error_exitcode=1 -print_final_stats=1 -verbosity=0 \
 	-artifact_prefix="$build/fuzz/failed/" "$@" "${corpus[@]}"

@@ -70,7 +70,7 @@ def main():
 		wrong = different(program, scene + holes, options, cuts, threads)
 		expect(not wrong, name, "with a hole:" if holes else "without:", len(wrong), "rows differ:", *wrong[:5])
 	if differs == "threads": # how they share the work is chance: seldom the same thread does it all
-		stock = next(filter(None, (different(program, scene + HOLE, options, [], (1, 2, 4), on=False) for _ in range(5))), [])
+		stock = next(filter(None, (different(program, scene + HOLE, options, [], (1, 2, 4), on=False) for _ in range(20))), [])
 	else:
 		stock = different(program, scene + HOLE, options, ["3"], (1,), on=False)
 	if name in ("plain", "am1", "am2", "blur"): # nothing is left to chance
