@@ -103,8 +103,9 @@ void Scheduler::settle(JobState& j, int strip, const WorkerId& who, PixelHash ha
 		else if (agree >= 2)
 			j.confirmed.insert(v.worker);
 	}
+	// Who renders at a later try what it failed itself was unlucky, and may be the only worker there is.
 	for (const WorkerId& id : t.failed_by)
-		if (WorkerState* w = worker(id); w && w->aside.empty() && ++w->blame >= rules.blame)
+		if (WorkerState* w = worker(id); w && id != who && w->aside.empty() && ++w->blame >= rules.blame)
 			set_aside(id, "it failed " + std::to_string(w->blame) + " strips that others rendered", changes);
 	check_done(j, now, changes);
 }

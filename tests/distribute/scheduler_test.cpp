@@ -46,6 +46,25 @@ TEST(Scheduler, PrioritiesThenAge) {
 	EXPECT_EQ(s.take("a", 0)->job, 3);
 }
 
+TEST(Scheduler, WhoRendersWhatItFailedBeforeIsNotToBlame) {
+	Scheduler s(unchecked(), 1);
+	s.add_job(1, 4, 0);
+	s.add_worker("a", 1, 0);
+	Changes changes;
+	Time now = 0;
+	for (int strip = 0; strip < 4; ++strip) {
+		const auto bad = s.take("a", now += 100);
+		ASSERT_TRUE(bad) << strip;
+		s.fail(bad->id, now, changes);
+		const auto good = s.take("a", now += 100);
+		ASSERT_TRUE(good) << strip;
+		EXPECT_EQ(good->strip, bad->strip);
+		EXPECT_TRUE(s.complete(good->id, truth(1, strip), now, changes));
+	}
+	EXPECT_TRUE(changes.aside.empty());
+	EXPECT_EQ(changes.done, std::vector<JobId>{1});
+}
+
 TEST(Scheduler, SilenceEndsALeaseAndALateReportChangesNothing) {
 	Scheduler s(unchecked(), 1);
 	s.add_job(1, 1, 0);
