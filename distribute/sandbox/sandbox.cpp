@@ -3,8 +3,10 @@
 
 #include "distribute/common/error.h"
 #include "distribute/common/files.h"
+#include "distribute/common/hash.h"
 #include "distribute/sandbox/filter.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <set>
 #include <sstream>
@@ -13,8 +15,9 @@
 namespace farm {
 namespace {
 
-// A scene can ask whether a file exists: where the program lies here is not for its pictures to show.
-const fs::path program_place = "/program", libraries_place = "/libraries";
+// A scene can ask whether a file exists: where the program lies here, and what else is installed, is not for its pictures to
+// show.
+const fs::path program_place = "/program";
 
 fs::path find_bubblewrap() {
 	const char* path = std::getenv("PATH");
@@ -39,22 +42,29 @@ bool within(const fs::path& path, const fs::path& folder) {
 	return !rest.empty() && *rest.begin() != "..";
 }
 
-/// The libraries a program loads, as ldd tells them.
-std::set<fs::path> libraries_of(const fs::path& program) {
+/// What a program loads, as ldd tells it.
+struct Loaded {
+	std::set<fs::path> libraries; ///< looked for by name
+	std::set<fs::path> paths;     ///< the dynamic loader, and whatever else must be where it is
+};
+
+Loaded loaded_by(const fs::path& program) {
 	Command ldd;
 	ldd.words = {"ldd", program.string()};
 	ldd.environment = {{"LC_ALL", "C"}};
 	int code = 0;
 	std::istringstream lines(output_of(ldd, code));
-	std::set<fs::path> found;
+	Loaded found;
 	for (std::string line; std::getline(lines, line);) {
 		const size_t from = line.find('/'), to = line.find(" (0x");
-		if (from != std::string::npos && to != std::string::npos && from < to)
-			found.insert(fs::path(line.substr(from, to - from)).lexically_normal());
+		if (from != std::string::npos && to != std::string::npos && from < to) {
+			const bool by_name = line.find("=>") < from;
+			(by_name ? found.libraries : found.paths).insert(fs::path(line.substr(from, to - from)).lexically_normal());
+		}
 		if (line.find("=> not found") != std::string::npos)
 			throw Error(program.string() + " lacks a library: " + line.substr(line.find_first_not_of(" \t")));
 	}
-	if (code != 0 || found.empty())
+	if (code != 0 || found.libraries.empty())
 		throw Error(program.string() +
 					" is no program with libraries that ldd can tell, so it cannot be fenced; give povray itself, "
 					"or say --no-sandbox");
@@ -64,22 +74,22 @@ std::set<fs::path> libraries_of(const fs::path& program) {
 } // namespace
 
 Sandbox::Sandbox(const fs::path& program) : bubblewrap(find_bubblewrap()) {
-	std::set<fs::path> folders;
 	program_room.reads.emplace_back(program, program_place);
-	for (const auto& library : libraries_of(program))
+	const Loaded loaded = loaded_by(program);
+	for (const auto& path : loaded.paths)
+		program_room.reads.emplace_back(path);
+	for (const auto& library : loaded.libraries) {
+		library_folders.insert(library.parent_path());
 		// The system's folders of libraries have no secrets, and a few mounts cost less than fifty.
-		if (within(library, "/usr") || within(library, "/lib") || within(library, "/lib64"))
-			folders.insert(library.parent_path());
-		else
-			program_room.reads.emplace_back(library, libraries_place / library.filename());
-	library_folders = libraries_place;
-	for (const auto& folder : folders) {
-		library_folders += ":" + folder.string();
-		bool inside = false;
-		for (const auto& other : folders)
-			inside = inside || (other != folder && within(folder, other));
-		if (!inside)
-			program_room.reads.emplace_back(folder);
+		if (!within(library, "/usr") && !within(library, "/lib") && !within(library, "/lib64"))
+			libraries.insert(library);
+	}
+	for (const auto& folder : library_folders) {
+		const auto holds = [&](const fs::path& other) { return other != folder && within(folder, other); };
+		const bool inside = std::any_of(library_folders.begin(), library_folders.end(), holds);
+		const bool systems = within(folder, "/usr") || within(folder, "/lib") || within(folder, "/lib64");
+		if (systems && !inside)
+			libraries.insert(folder);
 	}
 	filter = std::shared_ptr<const int>(new int(make_filter()), [](const int* d) {
 		::close(*d);
@@ -103,7 +113,12 @@ Command Sandbox::fenced(const Command& command, Room room, const Limits& limits)
 		return whole;
 	if (!room.everything) {
 		room.reads.insert(room.reads.end(), program_room.reads.begin(), program_room.reads.end());
-		whole.environment["LD_LIBRARY_PATH"] = library_folders;
+		const fs::path hidden = "/" + random_hex(16); // no scene can guess that, nor list a folder
+		for (const auto& thing : libraries)
+			room.reads.emplace_back(thing, hidden / thing.relative_path());
+		std::string& search = whole.environment["LD_LIBRARY_PATH"];
+		for (const auto& folder : library_folders)
+			search += (search.empty() ? "" : ":") + (hidden / folder.relative_path()).string();
 		whole.words.at(0) = program_place;
 	}
 	whole.words = fence_words(bubblewrap, room, whole);

@@ -7,6 +7,7 @@
 #include "distribute/sandbox/limits.h"
 
 #include <memory>
+#include <set>
 
 namespace farm {
 
@@ -28,7 +29,8 @@ public:
 private:
 	std::filesystem::path bubblewrap;
 	Room program_room;
-	std::string library_folders; ///< as LD_LIBRARY_PATH has them
+	std::set<std::filesystem::path> libraries;       ///< files and folders of them to be seen
+	std::set<std::filesystem::path> library_folders; ///< to be searched
 	std::shared_ptr<const int> filter;
 };
 

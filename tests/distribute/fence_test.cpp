@@ -130,9 +130,13 @@ TEST_F(Fence, ThingsAreWhereTheyAreOnEachMachine) {
 	EXPECT_EQ(printed.substr(0, 5), "seen\n") << printed;
 	EXPECT_EQ(read_file(work.path() / "write/y"), "x\n");
 	std::istringstream lines(printed.substr(std::min<size_t>(5, printed.size())));
+	int hidden = 0; // the libraries, under a name that only who may list a folder can find
 	for (std::string line; std::getline(lines, line);)
-		EXPECT_TRUE((std::set<std::string>{"/dev", "/home/*", "/lib", "/lib64", "/program", "/r", "/usr", "/w"}).count(line))
-			<< line;
+		if (line.size() == 33)
+			++hidden;
+		else
+			EXPECT_TRUE((std::set<std::string>{"/dev", "/home/*", "/lib64", "/program", "/r", "/w"}).count(line)) << line;
+	EXPECT_EQ(hidden, 1);
 	EXPECT_EQ(Sandbox().placed("/a", "/b").at, "/a") << "without a fence things are where they are";
 }
 

@@ -15,6 +15,7 @@ for place in PLACES.values():
     os.makedirs(place + "/tmp")
     shutil.copy(BIN + "/povray", place)
 guesses = ["../strip.ini", "../ini", "../log", "../light", "../out", "../out/whole.png", "../out/light", "../render", "../../log", "out", "/strip.ini", "/ini", "/out", "/proc/self"]
+guesses += [folder + "/x86_64-linux-gnu/libc.so.6" for folder in ("/lib", "/usr/lib", "/libraries")] + ["/usr/lib/os-release"]
 guesses += ["../" * n + "lib64/ld-linux-x86-64.so.2" for n in range(1, 12)]
 guesses += [place + "/" + name for place in PLACES.values() for name in ("povray", "cache", "cache/bundles", "tmp")]
 # One bit a guess, a column of pixels each.
