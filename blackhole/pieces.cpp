@@ -96,7 +96,9 @@ int Route::pieces(int first, int last, int chords, Pieces& out) const {
 	const Four lost = static_cast<float>(rounding + uneven * tolerance_) * far;
 	out.bulge = bulge + lost;
 	out.farthest = far + out.bulge;
-	out.nearest = 0.5F * (1 + swept) * lesser(from.r, to.r) - lost;
+	// More than half a turn may come as near as it likes.
+	const Four whole = from.c * to.s - from.s * to.c, none = all(0);
+	out.nearest = greater(whole, swept) < 0 ? none : 0.5F * (1 + swept) * lesser(from.r, to.r) - lost;
 	return count;
 }
 

@@ -199,7 +199,9 @@ bool Route::next(Arc& arc, int chords) {
 	arc.bulge = (p + q > 0 ? l * p * q / (p + q) : 0) + 0.1 * tolerance_ * far;
 	arc.length = l * (1 + (2 * p * p + 2 * q * q + p * q) / 30);
 	arc.farthest = far + arc.bulge;
-	arc.nearest = 0.5 * (1 + swept) * std::min(r, r_);
+	// More than half a turn may come as near as it likes.
+	const bool whole = swept < 0 && from.cosine * state_.sine < from.sine * state_.cosine;
+	arc.nearest = whole ? 0 : 0.5 * (1 + swept) * std::min(r, r_);
 	return true;
 }
 
