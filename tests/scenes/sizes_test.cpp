@@ -122,3 +122,26 @@ TEST(Sizes, FarFromTheOriginIsNamed) {
 		std::string::npos)
 		<< says("<0, 0, 0>", "effect_radius 1e10");
 }
+
+// POV-Ray takes negative radii for what they are without the sign; so must those that look whether a ray comes near, however many
+// objects there are.
+TEST(Sizes, TheSignOfASpheresRadiusMeansNothing) {
+	const auto spheres = [](const char* sign, int count) {
+		std::string text = "camera { location <0, 0, -20> look_at 0 angle 50 } blackhole { 0, 1 effect_radius 60 }\n";
+		for (int i = 0; i < count; i++) {
+			const std::string turn = std::to_string(37 * i), shade = number((i % 7 + 1) / 8.0);
+			text += "sphere { vrotate(<4, 0, 0>, <0, " + turn + ", 2*" + turn + ">), " + sign + number(count > 100 ? 0.2 : 1.2) +
+					" pigment { rgb <1, " + shade + ", 0> } finish { ambient 1 diffuse 0 } }\n";
+		}
+		return povray(text, 64, 48).picture;
+	};
+	for (const int count : {1, 7, 200}) {
+		const Picture positive = spheres("", count);
+		ASSERT_FALSE(positive.samples.empty());
+		int seen = 0;
+		for (int i = 0; i < 64 * 48; i++)
+			seen += !positive.black(i % 64, i / 64);
+		EXPECT_GT(seen, 50) << count;
+		EXPECT_TRUE(positive == spheres("-", count)) << count;
+	}
+}

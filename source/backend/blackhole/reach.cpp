@@ -71,9 +71,10 @@ void Radii(const ObjectBase& object, const Blackhole& hole, DBL& nearest, DBL& f
 	const Sphere *sphere = dynamic_cast<const Sphere *>(&object);
 	if((sphere != NULL) && (sphere->Trans == NULL))
 	{
-		const DBL distance = hole.Distance(sphere->Center);
-		nearest = fabs(distance - sphere->Radius) / hole.Radius - 1e-9 * (distance + sphere->Radius) / hole.Radius;
-		farthest = (distance + sphere->Radius) / hole.Radius * (1.0 + 1e-9);
+		// POV-Ray takes negative radii, for what they are without the sign.
+		const DBL distance = hole.Distance(sphere->Center), radius = fabs(sphere->Radius);
+		nearest = fabs(distance - radius) / hole.Radius - 1e-9 * (distance + radius) / hole.Radius;
+		farthest = (distance + radius) / hole.Radius * (1.0 + 1e-9);
 		return;
 	}
 	DBL near2 = 0.0, far2 = 0.0, size = 0.0;

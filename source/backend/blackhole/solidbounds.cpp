@@ -21,9 +21,10 @@ void Scene_Box::Take(const ObjectBase& object, DBL margin)
 {
 	for(int i = 0; i < 3; i++)
 	{
+		// A sphere of negative radius has its box inside out.
 		const DBL from = object.BBox.Lower_Left[i], to = from + object.BBox.Lengths[i], more = margin + 1e-6 * max(fabs(from), fabs(to));
-		lo[i] = from - more;
-		hi[i] = to + more;
+		lo[i] = min(from, to) - more;
+		hi[i] = max(from, to) + more;
 	}
 }
 
