@@ -8,9 +8,10 @@
 namespace farm {
 namespace {
 
-/// Waits for the end of a process that was told to; killed if it will not.
+/// Waits for the end of a process that was told to; killed if it will not, and then leaves its scratch files behind.
 void end(std::optional<Process>& process) {
-	if (process && !process->over(10))
+	constexpr double patience = 60; // it takes a tenth of a second, and a busy machine its time
+	if (process && !process->over(patience))
 		process->signal(SIGKILL);
 	process.reset();
 }
