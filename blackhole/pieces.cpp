@@ -10,9 +10,8 @@ namespace {
 // The cosine of what a piece may sweep for lens(): 1.16 radians.
 constexpr float widest_lens = 0.4F;
 
-// What single precision may lose of a radius, several times over; and what interpolated angles lack of length 1, in parts of the
-// tolerance.
-constexpr double rounding = 1e-6, uneven = 1e-4;
+// What single precision may lose of a radius, several times over.
+constexpr float rounding = 1e-6F;
 
 // Corners of four pieces, or their ends: u, b du/dphi as a Knot's, cosine and sine; then the points, and tangents of some length.
 struct Corners {
@@ -93,12 +92,11 @@ int Route::pieces(int first, int last, int chords, Pieces& out) const {
 		out.length = l + 1.6F * bulge * bulge / some;
 		bulge += static_cast<float>(0.1 * tolerance_) * far;
 	}
-	const Four lost = static_cast<float>(rounding + uneven * tolerance_) * far;
-	out.bulge = bulge + lost;
+	out.bulge = bulge + rounding * far;
 	out.farthest = far + out.bulge;
 	// More than half a turn may come as near as it likes.
 	const Four whole = from.c * to.s - from.s * to.c, none = all(0);
-	out.nearest = greater(whole, swept) < 0 ? none : 0.5F * (1 + swept) * lesser(from.r, to.r) - lost;
+	out.nearest = greater(whole, swept) < 0 ? none : 0.5F * (1 + swept) * lesser(from.r, to.r) - rounding * far;
 	return count;
 }
 

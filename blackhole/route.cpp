@@ -8,6 +8,13 @@
 
 namespace blackhole {
 
+// Of length 1 to the last digit: the plane's axes are made of the first such, and all of the way's ends should be where its
+// pieces' are.
+Route::State Route::even(const State& of) {
+	const double per = 1 / std::sqrt(of.cosine * of.cosine + of.sine * of.sine);
+	return {of.u, of.w, per * of.cosine, per * of.sine};
+}
+
 // A way s on from a state, where u and w are known.
 Route::State Route::turned(const State& from, double u, double w, double s) const {
 	double c, t;
@@ -69,7 +76,7 @@ bool Route::solve(const Vec3& x, const Vec3& d, const Atlas& atlas, bool ramp) {
 	} else {
 		// Out from the knot before it, or in to that.
 		const double way = orbit_.way(knot, u, -std::fabs(w));
-		const State outward = turned(canonical(knot), u, -std::fabs(w), way);
+		const State outward = even(turned(canonical(knot), u, -std::fabs(w), way));
 		begin_ = {u, w, outward.cosine, in * outward.sine};
 		swept_ = -in * (orbit_.angle(knot) + orbit_.k() * way);
 	}
@@ -87,7 +94,7 @@ bool Route::solve(const Vec3& x, const Vec3& d, const Atlas& atlas, bool ramp) {
 		const double slope = orbit_.slope(edge);
 		last_ = orbit_.before(edge);
 		const double way = orbit_.way(last_, edge, slope);
-		end_ = turned(canonical(last_), edge, slope, way);
+		end_ = even(turned(canonical(last_), edge, slope, way));
 		swept_ += orbit_.angle(last_) + orbit_.k() * way;
 	} else {
 		last_ = -1;

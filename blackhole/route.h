@@ -58,6 +58,7 @@ private:
 	struct State {
 		double u, w, cosine, sine;
 	};
+	static State even(const State& of);
 	State turned(const State& from, double u, double w, double s) const;
 	State canonical(int q) const;
 	State corner(int number) const;

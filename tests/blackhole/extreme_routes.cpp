@@ -4,10 +4,38 @@
 #include "blackhole/route.h"
 
 #include <algorithm>
+#include <vector>
 
 using namespace blackhole;
 
 namespace extremes {
+
+// Pieces of any length must hold their chords, of these corners, and lie at the radii they say.
+static std::string check_pieces(const Route& route, const std::vector<Vec3>& corners, double tolerance) {
+	const int chords = static_cast<int>(corners.size()) - 1;
+	if (chords != route.chords())
+		return words("%d chords of %d", chords, route.chords());
+	for (int many = 1; many == 1 || many <= 0.3 / std::sqrt(tolerance); many *= 4)
+		for (int first = 0; first < chords;) {
+			Pieces p;
+			const int count = route.pieces(first, chords, many, p);
+			if (count < 1 || count > 4)
+				return words("%d pieces", count);
+			for (int i = 0; i < count; i++, first += many)
+				for (int j = first; j <= std::min(first + many, chords); j++) {
+					const Vec2 along{p.dx[i], p.dy[i]},
+						off = Vec2{dot(corners[j], route.e1()), dot(corners[j], route.e2())} - Vec2{p.x[i], p.y[i]};
+					const double square = dot(along, along), t = square > 0 ? std::clamp(dot(off, along) / square, 0.0, 1.0) : 0;
+					if (!(length(off - t * along) <= p.bulge[i]))
+						return words("corner %d is %g off a piece of %d chords that is %g wide", j, length(off - t * along), many,
+							p.bulge[i]);
+					if (!(length(corners[j]) <= p.farthest[i]) ||
+						(j > first && !(length(0.5 * (corners[j] + corners[j - 1])) >= p.nearest[i])))
+						return words("chord %d is outside of the radii of its piece of %d", j, many);
+				}
+		}
+	return {};
+}
 
 std::string check(const Ray& ray, const Atlas& atlas, Charted_Figures& worst) {
 	const double R = ray.settings.effect_radius, tolerance = ray.settings.tolerance;
@@ -44,12 +72,14 @@ std::string check(const Ray& ray, const Atlas& atlas, Charted_Figures& worst) {
 	Vec3 at = ray.x;
 	double phi = 0;
 	long count = 0;
+	std::vector<Vec3> corners{at};
 	for (Chord c; route.next(c);) {
 		if (++count > 100000)
 			return "chords without end";
 		if (length(c.from - at) != 0 || !std::isfinite(length(c.to)) || !std::isfinite(c.nearest) || !std::isfinite(c.farthest))
 			return words("chord %ld does not join, or is no number", count);
 		at = c.to;
+		corners.push_back(at);
 		const double start = std::atan2(dot(c.from, curve.e2()), dot(c.from, curve.e1()));
 		const auto since = [&](const Vec3& q) {
 			const double more = std::atan2(dot(q, curve.e2()), dot(q, curve.e1())) - start;
@@ -67,6 +97,8 @@ std::string check(const Ray& ray, const Atlas& atlas, Charted_Figures& worst) {
 	worst.chords += count;
 	if (count == 0 || !(length(at - end) <= 1e-12 * length(end)))
 		return "the last chord does not end where the route does";
+	if (const std::string wrong = check_pieces(route, corners, tolerance); !wrong.empty())
+		return wrong;
 	if (escapes) {
 		const double direction = length(route.end_tangent() - exact.tangent) / tolerance,
 					 place = length(end - R * exact.at) / (R * tolerance);

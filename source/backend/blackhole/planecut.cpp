@@ -61,16 +61,13 @@ Few_Objects::Few_Objects(const Chord_Tree& tree, const std::vector<std::pair<DBL
 		if((round.size() + boxed.size() > MOST) || (planes.size() > MOST_PLANES) || (anywhere.size() > MOST_ANYWHERE))
 			return;
 	}
-	// The axes are as long as interpolated angles make them.
-	const DBL lost = Rounding(1.0) + 1e-4 * hole.Tolerance;
-	smooth = Add(round, lost);
-	Add(boxed, lost);
+	smooth = Add(round);
+	Add(boxed);
 	few = true;
 }
 
-// To the spheres, wider by a part of what they are away, up to a multiple of four, by nothing where there is no fourth; how many
-// there are then.
-size_t Few_Objects::Add(const std::vector<Ball>& some, DBL lost)
+// To the spheres, up to a multiple of four, by nothing where there is no fourth; how many there are then.
+size_t Few_Objects::Add(const std::vector<Ball>& some)
 {
 	for(size_t i = 0; i < some.size(); i++)
 	{
@@ -85,7 +82,7 @@ size_t Few_Objects::Add(const std::vector<Ball>& some, DBL lost)
 		fours.back().x[k] = float(ball.center.x);
 		fours.back().y[k] = float(ball.center.y);
 		fours.back().z[k] = float(ball.center.z);
-		fours.back().square[k] = float(Sqr(ball.radius + lost * (length(ball.center) + ball.radius)));
+		fours.back().square[k] = float(Sqr(ball.radius + Rounding(length(ball.center) + ball.radius)));
 		balls[balls.size() - 4 + k] = ball.object;
 	}
 	return balls.size();

@@ -42,7 +42,7 @@ class Few_Objects
 			blackhole::Vec3 center;
 			DBL radius;
 		};
-		size_t Add(const std::vector<Ball>& some, DBL lost);
+		size_t Add(const std::vector<Ball>& some);
 		struct Spheres { blackhole::Four x, y, z, square; }; ///< of the radius
 		struct Plane
 		{
