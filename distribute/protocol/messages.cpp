@@ -168,12 +168,13 @@ void from_json(const json& j, Task& v) {
 	v.spec = f.object("spec").get<JobSpec>();
 }
 
-void to_json(json& j, const Failure& v) { j = json{{"line", v.line}, {"log", v.log}}; }
+void to_json(json& j, const Failure& v) { j = json{{"line", v.line}, {"log", v.log}, {"limited", v.limited}}; }
 
 void from_json(const json& j, Failure& v) {
 	const Fields f(j, "failure");
 	v.line = f.text("line", 0, 2000);
 	v.log = f.text("log", 0, limits::log_bytes, "");
+	v.limited = f.boolean("limited", false);
 }
 
 } // namespace farm

@@ -105,8 +105,9 @@ struct Task {
 
 /// A render that did not work.
 struct Failure {
-	std::string line; ///< POV-Ray's own words, one line
-	std::string log;  ///< the end of its output
+	std::string line;     ///< POV-Ray's own words, one line
+	std::string log;      ///< the end of its output
+	bool limited = false; ///< by a limit of the worker's own, which it is not to be blamed for
 };
 
 void to_json(json& j, const BundleFile& v);

@@ -48,8 +48,8 @@ public:
 	std::vector<LeaseId> beat(const WorkerId& worker, const std::vector<LeaseId>& leases, Time now);
 	/// The worker's answer. False if the lease has ended: then nothing changes.
 	bool complete(LeaseId lease, PixelHash hash, Time now, Changes& changes);
-	/// The worker could not. False likewise.
-	bool fail(LeaseId lease, Time now, Changes& changes);
+	/// The worker could not; it is not blamed for that if a limit of its own was in the way. False likewise.
+	bool fail(LeaseId lease, Time now, Changes& changes, bool limited = false);
 	/// The worker will not, through no fault of the strip. False likewise.
 	bool give_back(LeaseId lease);
 	/// Ends leases that have not been heard of in time; to be called every second or so.

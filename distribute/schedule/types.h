@@ -60,6 +60,7 @@ struct Vote {
 /// What is known of a strip beyond its state; only strips with something to tell have one.
 struct Trouble {
 	std::set<WorkerId> failed_by, returned_by;
+	std::set<WorkerId> limited; ///< those of failed_by that only met a limit of their own
 	int failures = 0, losses = 0;
 	std::vector<Vote> votes; ///< while more than one is needed
 	int needed = 1;          ///< votes for one hash

@@ -105,7 +105,7 @@ void Scheduler::settle(JobState& j, int strip, const WorkerId& who, PixelHash ha
 	}
 	// Who renders at a later try what it failed itself was unlucky, and may be the only worker there is.
 	for (const WorkerId& id : t.failed_by)
-		if (WorkerState* w = worker(id); w && id != who && w->aside.empty() && ++w->blame >= rules.blame)
+		if (WorkerState* w = worker(id); w && id != who && !t.limited.count(id) && w->aside.empty() && ++w->blame >= rules.blame)
 			set_aside(id, "it failed " + std::to_string(w->blame) + " strips that others rendered", changes);
 	check_done(j, now, changes);
 }
@@ -123,7 +123,7 @@ void Scheduler::check_done(JobState& j, Time now, Changes& changes) {
 	changes.done.push_back(j.id);
 }
 
-bool Scheduler::fail(LeaseId id, Time now, Changes& changes) {
+bool Scheduler::fail(LeaseId id, Time now, Changes& changes, bool limited) {
 	const Lease* found = lease(id);
 	if (!found)
 		return false;
@@ -139,6 +139,8 @@ bool Scheduler::fail(LeaseId id, Time now, Changes& changes) {
 		return true;
 	Trouble& t = j.trouble[lease.strip];
 	t.failed_by.insert(lease.worker);
+	if (limited)
+		t.limited.insert(lease.worker);
 	++t.failures;
 	// Three tries on as many workers, or by whoever there is; while others that have worked on this job are away, they are
 	// waited for.

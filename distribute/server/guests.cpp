@@ -189,7 +189,7 @@ Awaitable<std::string> Farm::failed(LeaseId id, Failure failure) {
 	};
 	co_await commit(std::move(work));
 	Changes changes;
-	scheduler.fail(id, now(), changes);
+	scheduler.fail(id, now(), changes, failure.limited);
 	apply(changes);
 	events.strip(lease.job, lease.strip, lease.worker);
 	events.failure({{"job", lease.job}, {"strip", lease.strip}, {"worker", name}, {"line", failure.line}});

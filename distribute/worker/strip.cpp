@@ -91,7 +91,7 @@ Rendered render_strip(const Renderer& renderer, const Task& task, const fs::path
 	if (good)
 		result.picture = picture_in(out.from, task.spec.suffix());
 	result.failure = {tail(limit.empty() ? error_line(output, process.code(), scene) : limit, 1900),
-		tail(output, static_cast<size_t>(limits::log_bytes) / 2)};
+		tail(output, static_cast<size_t>(limits::log_bytes) / 2), !limit.empty()};
 	return result;
 }
 

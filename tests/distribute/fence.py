@@ -53,7 +53,7 @@ POLL = 0.5 # seconds that a worker is kept waiting for a strip
 class Desk(http.server.BaseHTTPRequestHandler):
     """A server that lends what a test puts in `tasks` and keeps what comes back in `results`: no second tries, no pauses."""
     protocol_version = "HTTP/1.1"
-    tasks, results, bundles, files = queue.Queue(), {}, {}, {}
+    tasks, results, limited, bundles, files = queue.Queue(), {}, {}, {}, {}
     known, left = set(), set() # workers by their ids; those that have left may still have asked
 
     def log_message(self, *_):
@@ -93,7 +93,9 @@ class Desk(http.server.BaseHTTPRequestHandler):
         else:
             if "/leases/" in self.path:
                 said = json.loads(body) if self.path.endswith("/failure") else {}
-                self.results[int(self.path.split("/")[3])] = (self.path.rsplit("/", 1)[1].split("?")[0], said.get("line", ""), said.get("log", ""))
+                lease = int(self.path.split("/")[3])
+                self.limited[lease] = said.get("limited", False)
+                self.results[lease] = (self.path.rsplit("/", 1)[1].split("?")[0], said.get("line", ""), said.get("log", ""))
             self.reply({"accepted": True, "why": ""})
 
     do_PUT = do_DELETE = do_POST
@@ -125,6 +127,7 @@ def send(text, options=(), files=()):
 def outcome(lease):
     """strip, failure or return; the error's line; the end of what povray printed."""
     wait(lambda: lease in Desk.results, "lease %d" % lease, None, worker_log)
+    assert Desk.limited[lease] == ("-limit allows" in Desk.results[lease][1]), Desk.results[lease] # whom to blame
     return Desk.results[lease]
 
 

@@ -164,6 +164,30 @@ TEST(Scheduler, WhoFailsWhatOthersRenderIsSetAside) {
 	EXPECT_FALSE(s.take("bad", now + 1000));
 }
 
+// It may have less memory than others; strips that fit are for it.
+TEST(Scheduler, WhoMetItsOwnLimitIsNotToBlame) {
+	Scheduler s(unchecked(), 1);
+	s.add_job(1, 20, 0);
+	s.add_worker("small", 1, 0);
+	s.add_worker("large", 1, 0);
+	Changes changes;
+	Time now = 0;
+	int failed = 0;
+	for (int i = 0; i < 20; ++i) {
+		if (const auto lease = s.take("small", now += 100)) {
+			failed += lease->strip < 10;
+			lease->strip < 10 ? s.fail(lease->id, now, changes, true)
+							  : s.complete(lease->id, truth(1, lease->strip), now, changes);
+		}
+		if (const auto lease = s.take("large", now))
+			s.complete(lease->id, truth(1, lease->strip), now + 1, changes);
+	}
+	EXPECT_GT(failed, 2);
+	EXPECT_TRUE(changes.aside.empty());
+	EXPECT_GT(s.workers().at("small").done, 0);
+	EXPECT_EQ(s.jobs().at(1).stage, Stage::done);
+}
+
 TEST(Scheduler, ALiarIsFoundOutAndWhatItSaidIsAskedAgain) {
 	Rules rules;
 	rules.check_every = 8;
