@@ -35,19 +35,11 @@ def progress(line):
 		sys.stderr.flush()
 
 
-class Stopped(BaseException):
-	"""A signal that would end us at once: povray, and what it writes, must go first."""
-
-
-def stop(number, _):
-	raise Stopped(number)
-
-
 def main(argv, povray, defaults):
 	"""povray: the binary; defaults: words for it before the user's."""
 	for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
 		if signal.getsignal(number) != signal.SIG_IGN: # as nohup sets it
-			signal.signal(number, stop)
+			signal.signal(number, runs.stop)
 	try:
 		code = answer(argv, povray, defaults)
 		sys.stdout.flush()
@@ -56,7 +48,7 @@ def main(argv, povray, defaults):
 		# Who read us has enough; what is left must not fail anew at the end.
 		os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 		return 128 + signal.SIGPIPE
-	except Stopped as stopped:
+	except runs.Stopped as stopped:
 		progress("")
 		return 128 + stopped.args[0]
 

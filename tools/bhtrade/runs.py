@@ -21,6 +21,42 @@ def number(value):
 	return text.replace("e-0", "e-").replace("e+0", "e").replace("e+", "e")
 
 
+class Stopped(BaseException):
+	"""A signal that would end us at once: povray, and what it writes, must go first."""
+
+
+held, waits = False, None # whether a signal has to wait, and one that does
+
+
+def stop(number, _):
+	"""What a signal does. While povray is being started nobody could end it yet: then the signal waits."""
+	global waits
+	if not held:
+		raise Stopped(number)
+	waits = number
+
+
+def said_by(command):
+	"""Runs it to its end, or ends it with us: its exit code, and what it said."""
+	global held
+	held = True
+	try:
+		process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors="replace")
+	except BaseException:
+		held = False
+		raise
+	try:
+		held = False
+		if waits is not None:
+			raise Stopped(waits)
+		out, errors = process.communicate()
+	except BaseException:
+		process.kill()
+		process.wait()
+		raise
+	return process.returncode, out + errors
+
+
 class Setting:
 	"""Of the holes; None: as the scene has it. effect_radius in Schwarzschild radii."""
 
@@ -83,12 +119,14 @@ class Povray:
 		# POV-Ray splits words at spaces that are not within quotes of its own, and has the last word count.
 		command = [self.binary, *self.words, "Output_to_File=off", "Display=off", "Pause_when_Done=off", "Verbose=off", "Continue_Trace=off",
 			"All_Console=on", "Preview_Start_Size=1", "Preview_End_Size=1", f"Render_Block_Size={BLOCK}", *words]
-		start = time.monotonic()
-		done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace")
-		wall = time.monotonic() - start
-		text = done.stdout + done.stderr
-		if done.returncode != 0:
-			raise Failed(what_povray_said(text) or f"povray ended with exit code {done.returncode}")
+		for _ in range(20): # on a busy machine a thread may not begin in the three seconds that POV-Ray gives it
+			start = time.monotonic()
+			code, text = said_by(command)
+			wall = time.monotonic() - start
+			if code == 0 or "Timed out waiting for worker thread startup" not in text:
+				break
+		if code != 0:
+			raise Failed(what_povray_said(text) or f"povray ended with exit code {code}")
 		return text, wall
 
 	def time(self, setting, every):
